@@ -139,6 +139,10 @@ strategies! {
             "rows of the working set depend on each other: they give way by 1e-7 times their multipliers",
             "nothing",
             "Friedlander & Orban 2012";
+        RoundedData "rounded_data",
+            "rows contradict each other by less than 5e-7 of their size: they are moved to where they agree best",
+            "nothing",
+            "bmod";
         InfeasibilityDoubt "infeasibility_doubt",
             "linear programs prove that nothing nearby is feasible: again from halfway between the bounds",
             "100 steps",

@@ -366,4 +366,9 @@ impl<'h> Parser<'h> {
     pub fn ending(&self) -> Ending {
         self.text.ending()
     }
+
+    /// A statement's text, as expanded.
+    pub fn text(&self, span: Span) -> &str {
+        self.text.map.text(span)
+    }
 }

@@ -72,8 +72,9 @@ impl<'a> Reduced<'a> {
             values: Vec::new(),
             inner,
         };
-        if reduced.inner.jacobian(&reduced.x, &mut values).is_ok() {
-            reduced.values = values;
+        let known = reduced.inner.jacobian(&reduced.x, &mut values).is_ok();
+        reduced.values = values;
+        if known {
             reduced.choose_signs();
         }
         reduced

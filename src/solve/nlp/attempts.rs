@@ -7,7 +7,8 @@ use super::interior_point::lock;
 use super::newton;
 use super::problem::Problem;
 use super::quadratic::Quadratic;
-use super::schedule::{NEARER, ROUNDING};
+use super::schedule::{FINEST, NEARER, ROUNDING};
+use super::trial::{Trial, polished};
 use super::truncated;
 use crate::solve::{SolveError, Strategy};
 use std::sync::{Arc, Mutex};
@@ -120,7 +121,8 @@ impl Driver<'_, '_> {
             if solution.x.iter().all(|v| v.is_finite()) {
                 x.clone_from(&solution.x);
                 let trial = self.judge(solution.x, solution.lambda, solution.ended);
-                self.keep(trial);
+                self.keep(trial.clone());
+                self.finish_rounded(&trial, delta);
             }
             // what is not solved with this parameter is not with a smaller one
             if self.ended == Ended::Iterations {
@@ -128,5 +130,17 @@ impl Driver<'_, '_> {
             }
         }
         Ok(())
+    }
+
+    /// The last digits of a solution with rounded kinks, which are not smooth enough for a solver's last steps.
+    fn finish_rounded(&mut self, trial: &Trial, delta: f64) {
+        if delta > FINEST || trial.is_optimal() || !trial.is_feasible() {
+            return;
+        }
+        let mut rounded = Problem::smoothed(self.instance, delta);
+        if let Some(t) = polished(self.instance, &mut rounded, &mut None, trial, 1e-6) {
+            let trial = self.judge(t.x, t.lambda, t.ended);
+            self.keep(trial);
+        }
     }
 }

@@ -22,9 +22,10 @@ use super::interior_point_solvers;
 use super::problem::{Nlp, Problem};
 use super::quadratic::Quadratic;
 use super::schedule::{
-    AGREEMENT, CHEAP, ELSEWHERE, ENOUGH, FIRST_ATTEMPT_ITERATIONS, From, MAX_ATTEMPT_ITERATIONS,
-    MIN_ATTEMPT_ITERATIONS, NEAR, OVERHEAD, TIMES,
+    AGREEMENT, CHEAP, DOUBT, ELSEWHERE, ENOUGH, FIRST_ATTEMPT_ITERATIONS, From,
+    MAX_ATTEMPT_ITERATIONS, MIN_ATTEMPT_ITERATIONS, NEAR, OVERHEAD, TIMES,
 };
+use super::slqp::Effort;
 use super::trial::{Trial, clean, polished, residuals_at, tidy, without_noise};
 use crate::autodiff::{
     Degree, ErrorKind, EvalFailure, Evaluator, Kinks, curved_columns, kinks, second_derivatives,
@@ -343,7 +344,7 @@ impl<'a, 'm> Driver<'a, 'm> {
             multiplies: false,
             products: None,
             attempt_iterations: FIRST_ATTEMPT_ITERATIONS,
-            growth: Growth::Watched,
+            growth: Growth::Watched(0),
         }
     }
 }
@@ -375,11 +376,20 @@ impl Driver<'_, '_> {
         let interior_first = !self.named
             && self.is_mostly_nonlinear()
             && self.settings.runs(Strategy::InteriorFirst);
-        if !interior_first && (self.settle_by_sequence(again)? || self.impossible) {
+        let effort = if interior_first {
+            Effort::AGAIN
+        } else {
+            Effort::FULL
+        };
+        let sequence = !interior_first || again;
+        if sequence && (self.settle_by_sequence(again, effort)? || self.impossible) {
             return Ok(self.finish());
         }
-        if self.infeasibility.is_some() && !self.settings.runs(Strategy::InteriorDoubt) {
-            return Ok(self.finish());
+        if self.infeasibility.is_some() {
+            if !self.settings.runs(Strategy::InteriorDoubt) {
+                return Ok(self.finish());
+            }
+            self.attempt_iterations = DOUBT;
         }
         let before = self.iterations;
         self.attempt(From::Start, &[])?;
@@ -398,7 +408,7 @@ impl Driver<'_, '_> {
             return Ok(self.finish());
         }
         let lacks_point = !self.best.as_ref().is_some_and(Trial::is_feasible);
-        if interior_first && lacks_point && self.settle_by_sequence(again)? {
+        if interior_first && lacks_point && self.settle_by_sequence(again, Effort::FULL)? {
             return Ok(self.finish());
         }
         if self.is_impossible() {
@@ -413,13 +423,18 @@ impl Driver<'_, '_> {
         let goes_on = !self.is_settled() && !proved && self.work() <= self.enough;
         if goes_on && self.settings.runs(Strategy::RestartFromBest) {
             if !self.named {
-                self.sequential(self.start_point(From::Best), None);
+                self.sequential(self.start_point(From::Best), None, Effort::FULL);
                 self.leave_saddles()?;
             }
             if !self.is_settled() {
                 self.attempt(From::Best, NEAR)?;
                 self.leave_saddles()?;
             }
+        }
+        let lacks_point = !self.best.as_ref().is_some_and(Trial::is_feasible);
+        if self.named && lacks_point && !self.is_settled() && self.infeasibility.is_none() {
+            // linear programs at the least violation may prove that there is no feasible point nearby
+            self.sequential(self.start_point(From::Best), None, Effort::FULL);
         }
         self.leave_saddles()?;
         Ok(self.finish())

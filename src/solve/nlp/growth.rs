@@ -14,6 +14,7 @@ use super::driver::Driver;
 use super::interior_point::{Ended, lock};
 use super::problem::{Nlp, ObjectiveForm, Problem};
 use super::schedule::From;
+use super::slqp::Effort;
 use super::trial::{CONSIDERABLE, FAR, Trial};
 use crate::model::instance::Instance;
 use crate::solve::{SolveError, Strategy};
@@ -22,14 +23,14 @@ use crate::solve::{SolveError, Strategy};
 const BOXES: [f64; 2] = [1e5, 1e8];
 /// The rows hold to this relative to their terms where growth is shown.
 const EXACT: f64 = 1e-8;
+/// How often it is looked for.
+const TIMES: u8 = 2;
 
 /// What is done about runs that lead far away.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum Growth {
-    /// Boxes are tried.
-    Watched,
-    /// They were.
-    Tried,
+    /// Boxes are tried; so often they were.
+    Watched(u8),
     /// Nothing: there is a local optimum already, or a box.
     Ignored,
 }
@@ -37,21 +38,24 @@ pub(super) enum Growth {
 impl Driver<'_, '_> {
     /// What a run from a start led to, or what was found out about where it was going.
     pub(super) fn follow(&mut self, start: Vec<f64>, trial: Trial) -> Result<Trial, SolveError> {
-        if self.growth != Growth::Watched {
+        let Growth::Watched(times) = self.growth else {
             return Ok(trial);
-        }
+        };
         let is_far = |reach| is_far(self.instance, self.eliminated(), &trial.level, reach);
         let far = trial.is_feasible() && is_far(FAR);
         let diverged = trial.ended == Ended::Diverging || trial.diverging || far;
+        // a second time only for points that the rows allow
+        let tried = times == TIMES || times > 0 && !trial.is_feasible();
         if trial.is_optimal()
             || !diverged
+            || tried
             || self.is_stopped()
             || !self.settings.runs(Strategy::UnboundedBoxes)
         {
             return Ok(trial);
         }
         let beyond = is_far(BOXES[1]);
-        self.growth = Growth::Tried;
+        self.growth = Growth::Watched(times + 1);
         let found = self.boxes(start)?;
         let better = |t: &Trial| t.unbounded || t.better(&trial);
         Ok(match found.filter(better) {
@@ -127,7 +131,7 @@ impl Driver<'_, '_> {
         let mut inner = Driver::new(&instance, problem, interior_point, settings, self.budget);
         inner.growth = Growth::Ignored;
         inner.iterations = self.iterations;
-        inner.sequential(inner.start.clone(), None);
+        inner.sequential(inner.start.clone(), None, Effort::FULL);
         inner.leave_saddles()?;
         if !inner.is_settled() {
             inner.attempt(From::Start, &[])?;

@@ -1,11 +1,14 @@
 //! Runs of the interior-point solver: their options, what is watched, and when one is given up.
 
-use super::driver::Driver;
+use super::driver::{Driver, UNBOUNDED};
 use super::interior_point::{Control, Ended, Progress, Shared, Solution, lock};
 use super::problem::Nlp;
 use super::schedule::{BASE, From};
 use crate::solve::SolveError;
 use crate::solve::budget::{self, Stop};
+
+/// A run whose objective is worse than this has lost its way.
+const LOST: f64 = 1e17;
 
 /// A step that is shortened to this part, and changes the objective by this part at most, goes nowhere; that many in a window of
 /// 20 iterations are a standstill.
@@ -156,9 +159,11 @@ impl Driver<'_, '_> {
                 ..budget::Progress::default()
             });
             let failures = lock(&*nlp).failures();
+            let unbounded = p.objective < -UNBOUNDED && p.primal < 1e-3;
+            let diverged = unbounded || p.objective > LOST;
             let stopped = budget.stop_after_failures(failures).is_some();
             still = progress.stands_still(p);
-            !stopped && !still
+            !stopped && !still && (p.restoration || !diverged)
         };
         let seconds = Some(budget.seconds_left()).filter(|s| *s < 1e9);
         let mut control = Control {

@@ -11,6 +11,8 @@ use super::driver::Driver;
 use super::interior_point::{Ended, lock};
 use super::polish::Active;
 use super::problem::{Nlp, Problem};
+use super::schedule::FINEST;
+use super::slqp::Effort;
 use super::trial::{Trial, active_set};
 use crate::model::instance::Relation;
 use crate::solve::{SolveError, Strategy};
@@ -49,7 +51,7 @@ impl Driver<'_, '_> {
             let before = best.objective;
             let margin = 1e-9 * before.abs().max(1.0);
             if !self.named {
-                self.sequential(x.clone(), None);
+                self.sequential(x.clone(), None, Effort::FULL);
             }
             let now = self.best.as_ref().map_or(before, |t| t.objective);
             if now < before - margin {
@@ -84,11 +86,16 @@ impl Driver<'_, '_> {
         let wider = differs && self.settings.runs(Strategy::WeaklyActiveCurvature);
         let sets = [Some(&active), Some(&strong).filter(|_| wider)];
         for set in sets.into_iter().flatten() {
-            let (x, with) = (&t.x, (1.0, &t.lambda[..]));
-            let Some(d) = negative_curvature(&mut *problem, x, with, &set.fixed, &set.binding)
-            else {
-                continue;
+            let curvature = |p: &mut Problem| {
+                negative_curvature(p, &t.x, (1.0, &t.lambda), &set.fixed, &set.binding)
             };
+            // a kink that points upwards shows once it is rounded
+            let rounded = || Problem::smoothed(self.instance, FINEST);
+            let direction = match curvature(&mut problem) {
+                None if self.kinks.is_some() => curvature(&mut rounded()),
+                d => d,
+            };
+            let Some(d) = direction else { continue };
             if !self.settings.runs(Strategy::SaddleEscape) {
                 return None;
             }

@@ -1,7 +1,5 @@
 //! Options and starts: what is tried first, and what when that does not lead to a certified point.
 
-use crate::solve::certificate::nonlinear::KINK_WIDTH;
-
 /// Options of every attempt; the user's own come after them.
 pub(super) const BASE: [(&str, &str); 8] = [
     ("tol", "1e-9"),
@@ -15,7 +13,8 @@ pub(super) const BASE: [(&str, &str); 8] = [
 ];
 
 /// Kinks are rounded by less and less; the last value also serves to judge points at a kink.
-pub(super) const ROUNDING: [f64; 4] = [1e-1, 1e-3, 1e-5, KINK_WIDTH];
+pub(super) const ROUNDING: [f64; 4] = [1e-1, 1e-3, 1e-5, FINEST];
+pub(super) use crate::solve::certificate::nonlinear::KINK_WIDTH as FINEST;
 
 /// Where an attempt starts.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -35,6 +34,8 @@ pub(super) enum From {
 /// Iterations that one attempt may take; the first less, for what takes so many is better begun elsewhere.
 pub(super) const MAX_ATTEMPT_ITERATIONS: u64 = 3000;
 pub(super) const FIRST_ATTEMPT_ITERATIONS: u64 = 500;
+/// What a proof that nothing nearby is feasible is doubted for.
+pub(super) const DOUBT: u64 = 100;
 /// Where there is an answer, a search for a better one may take this many at least.
 pub(super) const MIN_ATTEMPT_ITERATIONS: u64 = 50;
 
@@ -44,7 +45,6 @@ pub(super) const NEAR: &[(&str, &str)] = &[
     ("bound_push", "1e-6"),
     ("bound_frac", "1e-6"),
 ];
-
 pub(super) const NEARER: &[(&str, &str)] = &[
     ("mu_init", "1e-8"),
     ("bound_push", "1e-8"),

@@ -3,9 +3,10 @@
 use super::driver::Driver;
 use super::growth::Growth;
 use super::interior_point::{Ended, lock};
+use super::newton;
 use super::problem::Nlp;
 use super::schedule::From;
-use super::slqp;
+use super::slqp::{self, Effort};
 use super::trial::{Trial, active_set};
 use crate::solve::certificate::TOLERANCE;
 use crate::solve::certificate::nonlinear::is_locally_infeasible;
@@ -25,7 +26,11 @@ const WIDTH: f64 = 1e-8;
 
 impl Driver<'_, '_> {
     /// Sequential programs, from where an earlier solve ended if there was one. Whether that settles it.
-    pub(super) fn settle_by_sequence(&mut self, again: bool) -> Result<bool, SolveError> {
+    pub(super) fn settle_by_sequence(
+        &mut self,
+        again: bool,
+        effort: Effort,
+    ) -> Result<bool, SolveError> {
         if self.named {
             return Ok(false);
         }
@@ -40,10 +45,10 @@ impl Driver<'_, '_> {
             }
             _ => self.start.clone(),
         };
-        self.sequential(start, marginals.as_deref());
+        self.sequential(start, marginals.as_deref(), effort);
         if self.was_moved && !again && self.is_settled() {
             // slopes without limit may have held variables at 0 from which they were moved a little only
-            self.sequential(self.start_point(From::Middle), None);
+            self.sequential(self.start_point(From::Middle), None, effort);
         }
         let settled = self.is_settled_by("slqp")?;
         if settled {
@@ -63,7 +68,7 @@ impl Driver<'_, '_> {
         let violation = |t: &Trial| t.residuals.primal_relative;
         let before = self.best.as_ref().map_or(f64::INFINITY, violation);
         let x = self.start_point(From::Middle);
-        self.sequential(x, None);
+        self.sequential(x, None, Effort::FULL);
         if self.best.as_ref().is_some_and(Trial::is_feasible) {
             return self.is_settled_by("slqp");
         }
@@ -73,8 +78,8 @@ impl Driver<'_, '_> {
         Ok(false)
     }
 
-    /// Sequential programs from a point and its multipliers, if there are some, judged and kept.
-    pub(super) fn sequential(&mut self, x: Vec<f64>, multipliers: Option<&[f64]>) {
+    /// Sequential programs from a point, judged and kept; with multipliers, from the active set that they name.
+    pub(super) fn sequential(&mut self, x: Vec<f64>, multipliers: Option<&[f64]>, effort: Effort) {
         if !self.settings.runs(Strategy::SequentialQuadratic) || !self.affords_factors() {
             return;
         }
@@ -82,9 +87,13 @@ impl Driver<'_, '_> {
         problem.set_start(x);
         let own = self.settings.number("max_iter");
         let own = own.map_or(u64::MAX, |n| n as u64);
+        let effort = Effort {
+            steps: effort.steps.min(self.budget.iterations_left()).min(own),
+            ..effort
+        };
         let request = slqp::Request {
             multipliers,
-            steps: slqp::STEPS.min(self.budget.iterations_left()).min(own),
+            effort,
             width: 0.0,
             strategies: self.settings.strategies(),
         };
@@ -102,14 +111,14 @@ impl Driver<'_, '_> {
             slqp::End::Infeasible => Ended::Infeasible,
             slqp::End::Diverging => Ended::Diverging,
             slqp::End::Spent => Ended::Iterations,
-            slqp::End::Stuck => Ended::SmallStep,
+            slqp::End::Stuck | slqp::End::Outgrown => Ended::SmallStep,
         };
         if run.end == slqp::End::Infeasible
             && self.violation_escapes < MOST_ESCAPES
             && let Some(x) = self.beyond_least_violation(&run.x, &run.lambda)
         {
             self.violation_escapes += 1;
-            return self.sequential(x, None);
+            return self.sequential(x, None, effort);
         }
         let trial = self.judge(run.x, run.lambda, ended);
         if run.end == slqp::End::Infeasible {
@@ -132,12 +141,23 @@ impl Driver<'_, '_> {
 
     /// Where rows have no multipliers, as a square that is to be 0: the point is optimal if the same rows, a little wider, have an
     /// optimum with multipliers and all but the same value.
-    fn without_multipliers(&mut self, trial: Trial) -> Trial {
+    fn without_multipliers(&mut self, mut trial: Trial) -> Trial {
         let mut problem = lock(&*self.problem);
         problem.set_start(trial.x.clone());
+        if !trial.is_feasible() {
+            let budget = self.budget;
+            let run = newton::solve(&mut *problem, &mut |_| budget.is_over());
+            drop(problem);
+            if let Some(run) = run {
+                self.spend(run.steps);
+                trial = self.judge(run.x, trial.lambda, trial.ended);
+            }
+            problem = lock(&*self.problem);
+            problem.set_start(trial.x.clone());
+        }
         let request = slqp::Request {
             multipliers: None,
-            steps: slqp::STEPS,
+            effort: Effort::FULL,
             width: WIDTH,
             strategies: self.settings.strategies(),
         };

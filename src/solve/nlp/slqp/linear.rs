@@ -3,6 +3,7 @@
 //! What is violated is elastic, at a price ν; what is satisfied stays so, which d = 0 does. A basis goes on from one program to
 //! the next.
 
+use super::MOST_PENALTY;
 use super::equality::Working;
 use super::point::{Frame, Point};
 use crate::solve::Budget;
@@ -16,8 +17,9 @@ use crate::solve::lp::simplex_work;
 /// relaxations of models/walls/loop.blk end at points that are only feasible.)
 const MOST_WORK: f64 = 20.0;
 
-/// Of the program, in its units. What is left of the rows is left to later steps.
-const TOLERANCE: f64 = 1e-7;
+/// Of the program, in its units; and where that is not to be had, of derivatives that differ by many orders of magnitude. What is left of the
+/// rows is left to later steps.
+const TOLERANCES: [f64; 2] = [1e-7, 1e-5];
 
 /// What is left of a violation counts from here on.
 const SHORT: f64 = 1e-9;
@@ -52,6 +54,10 @@ pub(super) struct Step {
     /// The sum of what stays violated.
     pub(super) short: f64,
     pub(super) working: Working,
+    /// Some variable is at the trust region.
+    pub(super) confined: bool,
+    /// Price of what is violated: what was asked for, or more where that left the program without a minimum.
+    pub(super) penalty: f64,
 }
 
 impl Linear {
@@ -81,23 +87,42 @@ impl Linear {
         &mut self,
         frame: &Frame,
         at: &Point,
-        aim: Aim,
+        mut aim: Aim,
         budget: &Budget,
     ) -> Option<Step> {
-        let mut program = Program::new(frame, at, aim, self.confined);
-        let mut ended = self.minimum(&program, budget);
-        if let Err(Ended::Unbounded(_)) = ended
-            && !self.confined
-        {
-            self.confined = true;
-            program = Program::new(frame, at, aim, true);
-            ended = self.minimum(&program, budget);
+        for everything in [false, true] {
+            let mut program = Program::new(frame, at, aim, everything, self.confined);
+            let mut ended = self.minimum(&program, budget);
+            while let Ok(Err(Ended::Unbounded(_))) = &ended
+                && !self.confined
+            {
+                // what is violated may be too cheap
+                if aim.weight > 0.0 && aim.penalty < MOST_PENALTY && !program.elastic.is_empty() {
+                    aim.penalty *= 10.0;
+                } else {
+                    self.confined = true;
+                }
+                program = Program::new(frame, at, aim, everything, self.confined);
+                ended = self.minimum(&program, budget);
+            }
+            match ended {
+                Ok(Ok((point, states))) => {
+                    return Some(self.step(frame, at, aim, &program, &point, &states));
+                }
+                // Rounding only: then everything is elastic.
+                Ok(Err(_)) if !everything => {}
+                _ => return None,
+            }
         }
-        let (point, states) = ended.ok()?;
-        Some(self.step(frame, at, aim, &program, &point, &states))
+        None
     }
 
-    fn minimum(&mut self, p: &Program, budget: &Budget) -> Result<(form::Point, Basis), Ended> {
+    /// Err: no pivots are left. Ok(Err): there is no solution.
+    fn minimum(
+        &mut self,
+        p: &Program,
+        budget: &Budget,
+    ) -> Result<Result<(form::Point, Basis), Ended>, ()> {
         let scaled = p.scaling.apply(&p.problem);
         let elastic = p.elastic.iter().map(|&(i, k)| self.elastic[i][k]);
         let columns = self.columns.iter().copied();
@@ -116,15 +141,22 @@ impl Linear {
         simplex.limit = self.pivots;
         simplex.most_work = MOST_WORK * simplex_work(&scaled);
         simplex.set_basis(&from);
-        (simplex.tolerance, simplex.dual_tolerance) = (TOLERANCE, TOLERANCE);
-        let ended = simplex.solve(&mut |_| budget.stop().map(Ended::from));
-        self.pivots = self.pivots.saturating_sub(simplex.iterations);
-        match ended {
-            Ended::Solved => {
-                let point = simplex.point().ok_or(Ended::Failed)?;
-                Ok((p.scaling.restore(point), simplex.basis()))
+        let mut last = Ended::Failed;
+        for tolerance in TOLERANCES {
+            (simplex.tolerance, simplex.dual_tolerance) = (tolerance, tolerance);
+            last = simplex.solve(&mut |_| budget.stop().map(Ended::from));
+            if last != Ended::Failed {
+                break;
             }
-            other => Err(other),
+        }
+        self.pivots = self.pivots.saturating_sub(simplex.iterations);
+        match last {
+            Ended::Solved => Ok(match simplex.point() {
+                Some(point) => Ok((p.scaling.restore(point), simplex.basis())),
+                None => Err(Ended::Failed),
+            }),
+            Ended::Iterations | Ended::Time | Ended::Interrupted => Err(()),
+            other => Ok(Err(other)),
         }
     }
 
@@ -150,6 +182,7 @@ impl Linear {
                 pull[i] = aim.penalty * if side == 0 { -1.0 } else { 1.0 };
             }
         }
+        let mut confined = false;
         let column = |j: usize| {
             let (l, u) = (program.problem.lower[j], program.problem.upper[j]);
             let (bound, to, here) = match states[j] {
@@ -157,6 +190,7 @@ impl Linear {
                 State::Upper => (frame.upper[j], frame.upper[j] - at.x[j], u),
                 State::Basic | State::Free => return None,
             };
+            confined |= to != here;
             (to == here).then_some(bound)
         };
         let column = (0..n).map(column).collect();
@@ -174,6 +208,8 @@ impl Linear {
             lambda: point.y.iter().map(|y| -y).collect(),
             short,
             working: Working { column, row, pull },
+            confined,
+            penalty: aim.penalty,
         }
     }
 }
@@ -189,7 +225,7 @@ struct Program {
 }
 
 impl Program {
-    fn new(frame: &Frame, at: &Point, aim: Aim, confined: bool) -> Self {
+    fn new(frame: &Frame, at: &Point, aim: Aim, everything: bool, confined: bool) -> Self {
         let n = frame.n;
         let mut problem = Problem {
             cost: at.gradient.iter().map(|g| aim.weight * g).collect(),
@@ -214,8 +250,8 @@ impl Program {
             problem.row_lower.push(low);
             problem.row_upper.push(high);
             let sides = [
-                (low.is_finite() && missing > 0.0, 0),
-                (high.is_finite() && missing < 0.0, 1),
+                (low.is_finite() && (everything || missing > 0.0), 0),
+                (high.is_finite() && (everything || missing < 0.0), 1),
             ];
             let first = n + elastic.len();
             elastic.extend(sides.iter().filter(|s| s.0).map(|s| (i, s.1)));

@@ -25,15 +25,39 @@ use linear::{Aim, Linear, Step};
 use model::{Course, Model, sum};
 use point::{Frame, Point, Values};
 
-/// Steps at most.
-pub(super) const STEPS: u64 = 100;
-/// Pivots of the simplex method, all programs together, by the number of rows and columns.
-const PIVOTS: u64 = 30;
+/// What may be spent on it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Effort {
+    /// Steps.
+    pub steps: u64,
+    /// Pivots of the simplex method, all programs together, by the number of rows and columns.
+    pub pivots: u64,
+}
+
+impl Effort {
+    /// Where a program is only solved again if little has changed.
+    pub(super) const AGAIN: Self = Self {
+        steps: 10,
+        pivots: 30,
+    };
+
+    /// From anywhere.
+    pub(super) const FULL: Self = Self {
+        steps: 100,
+        pivots: 30,
+    };
+}
+
 /// Variables and constraints at most: each program is factorised afresh.
 const LARGEST: usize = 10_000;
 /// The penalty ν at first, and at most.
 const FIRST_PENALTY: f64 = 10.0;
 const MOST_PENALTY: f64 = 1e9;
+/// Where no row is violated by more, so many steps without half the residual are a zigzag: another method goes on.
+/// Steps in few variables cost next to nothing.
+const NEARLY: f64 = 1e-6;
+const PATIENCE: u64 = 25;
+const FEW: usize = 10;
 /// Multipliers, in units, that rows of an ordinary program do not have.
 const HEAVY: f64 = 1e3;
 /// A step is taken from this part of the promised decrease on.
@@ -41,6 +65,8 @@ const TAKEN: f64 = 0.05;
 /// A step that keeps less than this of its promise is corrected, so many times at most.
 const KEPT: f64 = 0.5;
 const CORRECTIONS: u32 = 4;
+/// A row or an objective this much flatter, in units, than where its unit was measured is measured anew.
+const FLATTER: f64 = 1e-4;
 /// A point with a larger number is a start for nothing.
 const FARTHEST: f64 = 1e15;
 /// A trust region this small is none.
@@ -63,15 +89,17 @@ pub(super) enum End {
     Spent,
     /// Steps get short.
     Stuck,
+    /// Where rows or the objective are much flatter than their units say.
+    Outgrown,
 }
 
 /// What is asked for besides.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Request<'a> {
-    /// Multipliers to begin with.
+    /// Start from the active set that these multipliers name.
     pub multipliers: Option<&'a [f64]>,
-    /// Steps at most.
-    pub steps: u64,
+    /// What is spent at most.
+    pub effort: Effort,
     /// Equations are met by so much, in units of their largest entry: 0, but where they have no multipliers.
     pub width: f64,
     /// What of it runs.
@@ -106,17 +134,27 @@ pub(super) fn solve(nlp: &mut dyn Nlp, request: Request<'_>, budget: &Budget) ->
     {
         *x = x.max(l).min(u);
     }
-    let mut frame = Frame::new(nlp, &start)?;
+    solve_from(nlp, start, request, false, budget)
+}
+
+/// The same from a point within the bounds; from the second time on, curvature counts for the unit of the objective.
+fn solve_from(
+    nlp: &mut dyn Nlp,
+    start: Vec<f64>,
+    request: Request<'_>,
+    again: bool,
+    budget: &Budget,
+) -> Option<Run> {
+    let (n, m) = nlp.size();
+    let mut frame = Frame::new(nlp, &start, again)?;
     frame.widen(request.width);
     let values = Values::at(nlp, &frame, &start)?;
     let at = Point::new(nlp, &frame, start, values)?;
-    let linear = Linear::new(&frame, &at, PIVOTS * (n + m) as u64);
+    let linear = Linear::new(&frame, &at, request.effort.pivots * (n + m) as u64);
+    let lambda = request.multipliers.map(|l| frame.in_units(l));
     let mut method = Method {
         nlp,
-        lambda: match request.multipliers {
-            Some(l) => frame.in_units(l),
-            None => vec![0.0; m],
-        },
+        lambda: lambda.clone().unwrap_or_else(|| vec![0.0; m]),
         linear,
         frame,
         at,
@@ -133,7 +171,29 @@ pub(super) fn solve(nlp: &mut dyn Nlp, request: Request<'_>, budget: &Budget) ->
         refused: None,
         strategies: request.strategies,
     };
-    let (steps, end) = method.run(request.steps);
+    let working = lambda.and_then(|l| method.named_by(&l));
+    let (steps, mut end) = method.run(working, request.effort.steps);
+    if !again && end == End::Solved && method.at.is_level(method.nlp, &method.frame, FLATTER) {
+        end = End::Outgrown;
+    }
+    if end == End::Outgrown {
+        let effort = Effort {
+            steps: request.effort.steps - steps,
+            ..request.effort
+        };
+        let request = Request {
+            multipliers: None,
+            effort,
+            ..request
+        };
+        let mut run = solve_from(method.nlp, method.at.x, request, true, budget)?;
+        run.steps += steps;
+        return Some(run);
+    }
+    let violated = method.frame.violation(&method.at.values.g) > 0.0;
+    if violated && matches!(end, End::Solved | End::Stuck) {
+        end = method.prove();
+    }
     let largest = method.lambda.iter().fold(0.0_f64, |s, l| s.max(l.abs()));
     budget.log(format!("largest multiplier {largest:.1e}"));
     Some(Run {
@@ -182,12 +242,20 @@ enum Found {
 }
 
 impl Method<'_, '_> {
-    fn run(&mut self, most: u64) -> (u64, End) {
-        let (mut working, mut steps): (Option<Working>, _) = (None, 0);
+    fn run(&mut self, mut working: Option<Working>, most: u64) -> (u64, End) {
+        let mut steps = 0;
+        let mut halved = (0, f64::INFINITY);
         while steps < most && !self.budget.is_over() {
+            self.frame.see_rounding(&self.at);
             let residual = self.at.residual(&self.frame, &self.lambda);
             if residual <= SOLVED {
                 return (steps, End::Solved);
+            }
+            let violated = self.frame.violation(&self.at.values.g) > NEARLY;
+            if self.at.x.len() < FEW || violated || residual < 0.5 * halved.1 {
+                halved = (steps, residual);
+            } else if steps - halved.0 >= PATIENCE {
+                break;
             }
             if self.radius.min(self.linear_radius) <= SMALLEST {
                 return (steps, End::Stuck);
@@ -207,6 +275,9 @@ impl Method<'_, '_> {
             match self.step(step) {
                 Ok(next) => working = next,
                 Err(end) => return (steps, end),
+            }
+            if self.at.is_flatter(&self.frame, FLATTER) {
+                return (steps, End::Outgrown);
             }
             if self.at.x.iter().any(|x| x.abs() > FARTHEST) {
                 return (steps, End::Diverging);
@@ -232,6 +303,50 @@ impl Method<'_, '_> {
                 self.weight,
             ));
         }
+    }
+
+    /// Whether anything lessens the violations from here, with the multipliers that say no.
+    fn prove(&mut self) -> End {
+        if self.forgive() {
+            return End::Stuck;
+        }
+        let aim = Aim {
+            penalty: 1.0,
+            weight: 0.0,
+            radius: 1.0,
+        };
+        match self.linear.solve(&self.frame, &self.at, aim, self.budget) {
+            Some(best) if best.short > 0.0 => {
+                self.lambda = best.lambda;
+                End::Infeasible
+            }
+            _ => End::Stuck,
+        }
+    }
+
+    /// Whether the violated rows differ by rounding only from rows that hold, which they then become.
+    fn forgive(&mut self) -> bool {
+        self.strategies.run(Strategy::RoundedData) && self.frame.forgive(&self.at.values.g)
+    }
+
+    /// The working set that multipliers name.
+    fn named_by(&self, lambda: &[f64]) -> Option<Working> {
+        let (frame, at) = (&self.frame, &self.at);
+        let row = |i: usize| match lambda[i] {
+            _ if frame.is_equation(i) => Some(frame.below[i]),
+            l if l > 0.0 => Some(frame.above[i]).filter(|v| v.is_finite()),
+            l if l < 0.0 => Some(frame.below[i]).filter(|v| v.is_finite()),
+            _ => None,
+        };
+        let column = |j: usize| {
+            let bounds = [frame.lower[j], frame.upper[j]];
+            bounds.into_iter().find(|&b| at.x[j] == b)
+        };
+        Some(Working {
+            column: (0..frame.n).map(column).collect(),
+            row: (0..frame.m).map(row).collect(),
+            pull: vec![0.0; frame.m],
+        })
     }
 
     /// Newton's step on a working set, which is returned if it may stay. Otherwise nothing has changed, or a step was taken
@@ -294,8 +409,8 @@ impl Method<'_, '_> {
 
     /// The linear program, with a penalty that lets it lessen the violations if anything does.
     fn program(&mut self) -> Found {
-        let radius = self.linear_radius;
-        let now = self.frame.violation(&self.at.values.g);
+        let mut radius = self.linear_radius;
+        let mut now = self.frame.violation(&self.at.values.g);
         let mut least: Option<f64> = None;
         loop {
             let aim = Aim {
@@ -306,6 +421,7 @@ impl Method<'_, '_> {
             let Some(step) = self.linear.solve(&self.frame, &self.at, aim, self.budget) else {
                 return Found::End(End::Stuck);
             };
+            self.penalty = step.penalty;
             if self.linear.confined {
                 self.frame.nonlinear.fill(true);
             }
@@ -326,6 +442,14 @@ impl Method<'_, '_> {
                         return Found::Step(step);
                     };
                     if best.short > (1.0 - 1e-7) * now {
+                        if best.confined && radius < 1.0 {
+                            radius = (10.0 * radius).min(1.0);
+                            continue;
+                        }
+                        if self.forgive() {
+                            now = 0.0;
+                            continue;
+                        }
                         self.lambda = best.lambda;
                         return Found::End(End::Infeasible);
                     }
@@ -457,6 +581,11 @@ impl Method<'_, '_> {
         if small
             && point.residual(&self.frame, &lambda) >= self.at.residual(&self.frame, &self.lambda)
         {
+            if linear.short > 0.0 && self.penalty < MOST_PENALTY {
+                // stationary for this penalty only
+                self.penalty *= 100.0;
+                return Ok(None);
+            }
             self.at = point;
             let (frame, memory) = (&self.frame, &mut self.memory);
             let again = Equality::new(frame, &self.at, &hessian, &working, ANY, memory);

@@ -9,6 +9,12 @@ const UNITS: (f64, f64) = (1e-3, 1e12);
 /// A row that is violated by less than this, relative to its size, is satisfied.
 const MET: f64 = 1e-11;
 
+/// What rounding may make of the sum of a row, relative to its largest term.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
+
+/// What rows may miss where no point satisfies them all, relative to their size: half of what the certificate allows.
+const FORGIVEN: f64 = 5e-7;
+
 /// What stays the same from point to point.
 pub(super) struct Frame {
     pub(super) n: usize,
@@ -21,6 +27,8 @@ pub(super) struct Frame {
     pub(super) above: Vec<f64>,
     /// What a row is divided by.
     pub(super) row_unit: Vec<f64>,
+    /// What rounding makes of each row where the run is, in units.
+    rounding: Vec<f64>,
     /// What the objective is divided by.
     pub(super) price: f64,
     /// Whether a variable has second derivatives.
@@ -28,8 +36,8 @@ pub(super) struct Frame {
 }
 
 impl Frame {
-    /// Units are those of the point. None where it has no values or derivatives.
-    pub(super) fn new(nlp: &mut dyn Nlp, x: &[f64]) -> Option<Self> {
+    /// Units are those of the point, that of the objective with its curvature if wanted. None where it has no values or derivatives.
+    pub(super) fn new(nlp: &mut dyn Nlp, x: &[f64], curved: bool) -> Option<Self> {
         let (n, m) = nlp.size();
         let size = |j: usize| x[j].abs().max(1.0);
         let mut row_unit = vec![0.0_f64; m];
@@ -38,7 +46,10 @@ impl Frame {
         }
         let mut gradient = vec![0.0; n];
         nlp.gradient(x, &mut gradient)?;
-        let steepest = (0..n).fold(0.0_f64, |s, j| s.max((gradient[j] * size(j)).abs()));
+        let mut steepest = (0..n).fold(0.0_f64, |s, j| s.max((gradient[j] * size(j)).abs()));
+        if curved {
+            steepest = steepest.max(curvature(nlp, x));
+        }
         let unit = |u: f64, (low, high): (f64, f64)| match u > 0.0 && u.is_finite() {
             true => u.clamp(low, high),
             false => 1.0,
@@ -58,6 +69,7 @@ impl Frame {
             upper: upper.to_vec(),
             below: divided(a),
             above: divided(b),
+            rounding: vec![0.0; m],
             row_unit,
             price: unit(steepest, (1e-6, 1e15)),
             nonlinear,
@@ -94,9 +106,17 @@ impl Frame {
         let (a, b) = (self.below[i], self.above[i]);
         let missing = (a - value).max(0.0) - (value - b).max(0.0);
         let size = if missing > 0.0 { a.abs() } else { b.abs() };
-        match missing.abs() <= MET * size.max(1.0) {
+        match missing.abs() <= (MET * size.max(1.0)).max(self.rounding[i]) {
             true => 0.0,
             false => missing,
+        }
+    }
+
+    /// What differs by no more than rounding at this point holds: terms may have grown since the units were measured.
+    pub(super) fn see_rounding(&mut self, at: &Point) {
+        for (i, rounding) in self.rounding.iter_mut().enumerate() {
+            let terms = at.rows.line(i).map(|(j, a)| (a * at.x[j]).abs());
+            *rounding = ROUNDING * terms.fold(0.0, f64::max);
         }
     }
 
@@ -112,9 +132,38 @@ impl Frame {
         }
     }
 
+    /// Moves the sides of violated rows to these values, if all are as near as makes no difference to a person: rows
+    /// that contradict each other by less than what they were rounded to.
+    pub(super) fn forgive(&mut self, g: &[f64]) -> bool {
+        let far = |i: usize| self.missing(i, g[i]).abs() > FORGIVEN * g[i].abs().max(1.0);
+        if (0..self.m).any(far) {
+            return false;
+        }
+        for (i, &level) in g.iter().enumerate().take(self.m) {
+            let missing = self.missing(i, level);
+            if missing != 0.0 && self.is_equation(i) {
+                (self.below[i], self.above[i]) = (level, level);
+            } else if missing > 0.0 {
+                self.below[i] = level;
+            } else if missing < 0.0 {
+                self.above[i] = level;
+            }
+        }
+        true
+    }
+
     pub(super) fn is_equation(&self, i: usize) -> bool {
         self.below[i] == self.above[i]
     }
+}
+
+/// What second derivatives of the objective make of a step as long as its variables.
+fn curvature(nlp: &mut dyn Nlp, x: &[f64]) -> f64 {
+    let none = vec![0.0; nlp.size().1];
+    let size = |j: usize| x[j].abs().max(1.0);
+    let entries = nlp.hessian_entries(x, &none).unwrap_or_default();
+    let each = entries.iter().filter(|e| e.2.is_finite());
+    each.fold(0.0, |s, &(i, j, h)| s.max((h * size(i) * size(j)).abs()))
 }
 
 /// Values and first derivatives.
@@ -190,6 +239,22 @@ impl Point {
     pub(super) fn length(&self, frame: &Frame, d: &[f64]) -> f64 {
         let each = (0..frame.n).filter(|&j| frame.nonlinear[j]);
         each.map(|j| d[j].abs() / self.unit(j)).fold(0.0, f64::max)
+    }
+
+    /// Whether a row has become so flat that what it misses would not be seen in its unit.
+    pub(super) fn is_flatter(&self, frame: &Frame, part: f64) -> bool {
+        let steepest = |i: usize| {
+            let entries = self.rows.line(i).map(|(j, a)| (a * self.unit(j)).abs());
+            entries.fold(1.0 / frame.row_unit[i], f64::max)
+        };
+        (0..frame.m).any(|i| steepest(i) < part)
+    }
+
+    /// Whether the objective has become so flat that its slope would not be seen in its unit.
+    pub(super) fn is_level(&self, nlp: &mut dyn Nlp, frame: &Frame, part: f64) -> bool {
+        let slopes = self.gradient.iter().enumerate();
+        slopes.fold(0.0_f64, |s, (j, g)| s.max((g * self.unit(j)).abs())) < part
+            && curvature(nlp, &self.x) < part * frame.price
     }
 
     /// ∇f + Jᵀλ, and the largest term of each entry.
