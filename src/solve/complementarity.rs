@@ -188,7 +188,8 @@ impl Backend for Bmcp {
                 _ => Claim::LocallyInfeasible,
             };
         }
-        if outcome.claim == Claim::LocallyInfeasible && is_proved_infeasible(instance, budget)? {
+        let proved = || is_proved_infeasible(instance, budget).unwrap_or(false);
+        if outcome.claim == Claim::LocallyInfeasible && proved() {
             outcome.claim = Claim::Infeasible;
             outcome.message = None;
         }

@@ -428,14 +428,14 @@ impl Layout {
             (start, index, entries) = with_zeros(&start, &index, &entries, &before);
         }
         let pattern = SymbolicSparseColMatRef::new_checked(order, order, &start, None, &index);
-        let mut met = vec![0usize; order];
+        let mut length = vec![0usize; order];
         for k in 0..order {
             for &i in &index[start[k]..start[k + 1]] {
-                met[i] += 1;
-                met[k] += 1;
+                length[i] += 1;
+                length[k] += 1;
             }
         }
-        let long_lines = met
+        let long_lines = length
             .iter()
             .filter(|&&c| c as f64 > DENSE * (order as f64).sqrt());
         let dense = match 2 * long_lines.count() > order {

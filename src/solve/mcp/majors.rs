@@ -222,8 +222,8 @@ impl Majors {
             r if r <= 0.1 * self.point.residual => 'M',
             _ => '-',
         };
-        let (end, t, prox) = (PathEnd::Solved, 1.0, candidate.prox);
-        log::major_line(run, &next, pivots, end, t, prox, 1.0, kind, tries);
+        let (end, prox) = (PathEnd::Solved, candidate.prox);
+        log::major_line(run, &next, pivots, end, 1.0, prox, 1.0, kind, tries);
         if kind == '-' {
             return false;
         }
@@ -438,7 +438,7 @@ impl Majors {
         if self.checkpoint.direction.is_none() {
             self.checkpoint.direction = Some(direction);
         }
-        let (end, t, prox) = (PathEnd::Solved, 1.0, candidate.prox);
+        let (end, prox) = (PathEnd::Solved, candidate.prox);
         let next = run.point(candidate.y);
         if let Some(next) = next {
             let monotone = next.merit <= (1.0 - ARMIJO) * reference;
@@ -446,7 +446,7 @@ impl Majors {
                 self.untested < run.settings.watchdog_limit && next.merit <= 1e8 * reference;
             if monotone || watched {
                 let kind = if monotone { 'M' } else { 'O' };
-                log::major_line(run, &next, pivots, end, t, prox, 1.0, kind, tries);
+                log::major_line(run, &next, pivots, end, 1.0, prox, 1.0, kind, tries);
                 self.warm = Some(candidate.kind);
                 self.point = next;
                 if self.point.residual < self.best.residual {
@@ -467,7 +467,7 @@ impl Majors {
             &self.point.clone(),
             pivots,
             end,
-            t,
+            1.0,
             prox,
             0.0,
             '-',

@@ -141,7 +141,7 @@ impl Work {
     }
 
     /// A free column and an inequality change places: what the row adds up to is the column then, and the row is gone. Taken where the row is short
-    /// and the matrix does not grow. (A wall's cones of friction, two rows for each two free forces, become bounds.)
+    /// and the matrix grows by a few entries at most. (A wall's contacts have four inequalities of three free forces: three of them become bounds.)
     fn exchange(&mut self, j: usize) {
         if self.lower[j].is_finite() || self.upper[j].is_finite() {
             return;
