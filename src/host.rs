@@ -72,6 +72,10 @@ pub trait Host {
     fn memory(&self) -> usize {
         0
     }
+    /// Bytes that the process may hold before the system ends it, None where unknown.
+    fn memory_there_is(&self) -> Option<usize> {
+        None
+    }
 }
 
 /// Days since 1899-12-31, as GAMS counts, from seconds since 1970-01-01 UTC (which is day 25568).

@@ -245,4 +245,12 @@ impl Host for RunHost<'_> {
         #[cfg(all(not(feature = "system"), not(target_arch = "wasm32")))]
         0
     }
+
+    fn memory_there_is(&self) -> Option<usize> {
+        #[cfg(feature = "system")]
+        return crate::system::memory_there_is();
+        // Of the 4 GiB that addresses of 32 bits reach: growing a vector holds it twice.
+        #[cfg(not(feature = "system"))]
+        cfg!(target_arch = "wasm32").then_some(3 << 30)
+    }
 }

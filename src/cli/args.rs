@@ -210,7 +210,7 @@ pub struct RunArgs {
     /// How it is solved.
     #[command(flatten)]
     pub solve: SolveArgs,
-    /// Memory that the run may take.
+    /// Memory that the run may take (default: nine tenths of what is free).
     #[arg(long, value_name = "MB", value_parser = positive)]
     pub max_memory: Option<f64>,
     /// Proves an interval for the objective of every lp and mip.

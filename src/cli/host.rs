@@ -117,6 +117,10 @@ impl Host for SystemHost {
         system::memory()
     }
 
+    fn memory_there_is(&self) -> Option<usize> {
+        system::memory_there_is()
+    }
+
     fn read(&mut self, path: &str, from: Option<&Path>) -> Found<String> {
         self.files.read(path, from)
     }

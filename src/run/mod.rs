@@ -114,6 +114,8 @@ pub struct Machine<'h> {
     /// What takes its time now, for who waits.
     pub(crate) doing: RefCell<String>,
     stop: Cell<bool>,
+    /// Bytes that the run may take: what was asked for, or what the machine has.
+    memory: Option<usize>,
     /// The text itself shows numbers.
     shows_numbers: bool,
     /// Loops around the statement that runs.
@@ -157,6 +159,7 @@ impl<'h> Machine<'h> {
         }
         let started = host.now();
         let random = options.random();
+        let memory = options.max_memory.or_else(|| host.memory_there_is());
         let machine = Self {
             symbols: program.symbols,
             store: program.store,
@@ -164,6 +167,7 @@ impl<'h> Machine<'h> {
             map: program.map,
             code: Arc::default(),
             options,
+            memory,
             passed_over: FxHashSet::default(),
             models: FxHashMap::default(),
             generated: FxHashMap::default(),
@@ -312,7 +316,7 @@ impl<'h> Machine<'h> {
                 .note(self);
             return false;
         }
-        if let Some(limit) = self.options.max_memory
+        if let Some(limit) = self.memory
             && host.memory() > limit
         {
             self.stop.set(true);

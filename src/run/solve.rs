@@ -323,7 +323,8 @@ impl<'h> Machine<'h> {
             seconds: self.model_option(model, "reslim", 1e10).min(left),
             iterations: count("iterlim", 2_147_483_647.0) as u64,
             evaluation_failures: count("domlim", 0.0) as u64,
-            memory: self.options.max_memory,
+            memory: self.memory,
+            memory_is_asked_for: self.options.max_memory.is_some(),
         }
     }
 

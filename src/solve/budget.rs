@@ -109,8 +109,10 @@ pub struct Limits {
     pub iterations: u64,
     /// Evaluations that may fail: `domlim`; 0 is no limit.
     pub evaluation_failures: u64,
-    /// Bytes: `--max-memory`.
+    /// Bytes: `--max-memory`, or what the machine has.
     pub memory: Option<usize>,
+    /// It was `--max-memory`.
+    pub memory_is_asked_for: bool,
 }
 
 impl Default for Limits {
@@ -120,6 +122,7 @@ impl Default for Limits {
             iterations: 2_147_483_647,
             evaluation_failures: 0,
             memory: None,
+            memory_is_asked_for: false,
         }
     }
 }
@@ -135,6 +138,7 @@ pub struct Budget<'m> {
     iterations: Cell<u64>,
     failures: u64,
     memory: Option<usize>,
+    memory_is_asked_for: bool,
     stopped: Cell<Option<Stop>>,
     asked: Cell<u32>,
     log: Cell<bool>,
@@ -157,6 +161,7 @@ impl<'m> Budget<'m> {
             iterations: Cell::new(0),
             failures: limits.evaluation_failures,
             memory: limits.memory,
+            memory_is_asked_for: limits.memory_is_asked_for,
             stopped: Cell::new(None),
             asked: Cell::new(0),
             log: Cell::new(log),
@@ -364,9 +369,9 @@ impl<'m> Budget<'m> {
         self.memory.map(|m| m.saturating_sub(used))
     }
 
-    /// Whether there is a limit on time or memory that a single step may break.
+    /// Whether there is a limit on time or memory, asked for, that a single step may break.
     pub fn is_limited(&self) -> bool {
-        self.memory.is_some() || self.deadline.get() < A_DAY
+        self.memory_is_asked_for || self.deadline.get() < A_DAY
     }
 
     /// Whether something of this size may be begun that cannot be stopped once it has: a matrix that a library factorises
@@ -506,6 +511,7 @@ mod tests {
         let limits = Limits {
             seconds: 3.0,
             memory: Some(1 << 20),
+            memory_is_asked_for: true,
             ..Limits::default()
         };
         let budget = Budget::new(&mut quiet, limits, false);
