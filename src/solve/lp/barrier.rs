@@ -818,17 +818,40 @@ fn centre(p: &Program, point: &Point, kept: &[usize]) -> Iterate {
     }
 }
 
-/// Solves a program, from a point inside if there is one, which is [`centre`]d, until residuals and gap are below the first
-/// tolerance, relative to the sizes of sides, costs and objective, or until no iteration brings them down; a point within the
-/// second one is a solution then. The layout of its system may be known. Nothing is said about programs without one: [`Ended::Failed`].
+/// What a solution is.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Goal {
+    /// For residuals and gap, relative to the sizes of sides, costs and objective.
+    pub tolerance: f64,
+    /// The same for a point that will do where no iteration brings them down.
+    pub enough: f64,
+    /// A gap of this part of the objective is none.
+    pub share: f64,
+}
+
+impl From<[f64; 2]> for Goal {
+    fn from([tolerance, enough]: [f64; 2]) -> Self {
+        Self {
+            tolerance,
+            enough,
+            share: 0.0,
+        }
+    }
+}
+
+/// Solves a program, from a point inside if there is one, which is [`centre`]d, until the goal is reached, or until no
+/// iteration comes nearer to it. The layout of its system may be known. Nothing is said about programs without one: [`Ended::Failed`].
 pub(super) fn solve(
     problem: &Problem,
     from: Option<&Point>,
     layout: Option<Layout>,
-    tolerances: [f64; 2],
+    Goal {
+        tolerance,
+        enough,
+        share,
+    }: Goal,
     budget: &Budget,
 ) -> Run {
-    let [tolerance, enough] = tolerances;
     let (p, kept) = Program::new(problem);
     let mut run = Run {
         point: Point {
@@ -864,7 +887,10 @@ pub(super) fn solve(
         let objective = dot(&p.cost, &at.value);
         let primal = largest(&rp) / sides;
         let dual = largest(&rd) / costs;
-        let gap = product / (1.0 + objective.abs());
+        let gap = match product <= share * objective.abs() {
+            true => 0.0,
+            false => product / (1.0 + objective.abs()),
+        };
         let worst = primal.max(dual).max(gap);
         budget.tell(Progress {
             method: "interior point",

@@ -232,9 +232,11 @@ fn solve(
     budget.log_timed("scaling");
     let small = scaled.m() + scaled.n() <= MAX_SMALL_SIZE;
     let mut answer = match (method, accuracy) {
-        (Method::Interior, _) => interior_only(&scaled, [tolerance.unwrap_or(1e-10); 2], budget),
+        (Method::Interior, _) => {
+            interior_only(&scaled, [tolerance.unwrap_or(1e-10); 2].into(), budget)
+        }
         (Method::Auto, Accuracy::Fast(t)) if !small => {
-            let answer = interior_only(&scaled, [t; 2], budget);
+            let answer = interior_only(&scaled, [t; 2].into(), budget);
             match answer.ended {
                 // Whatever is no solution is looked at more closely.
                 Ended::Solved | Ended::Time | Ended::Interrupted => answer,
@@ -493,16 +495,16 @@ fn simplex_answer(mut simplex: Simplex, ended: Ended) -> Gave {
 
 /// The interior point of a program, and how good it is: as [`barrier::solve`] has it, and where that fails as Clarabel has it, which
 /// tells programs without a solution.
-fn interior_only(p: &Problem, tolerances: [f64; 2], budget: &Budget) -> Gave {
+fn interior_only(p: &Problem, goal: barrier::Goal, budget: &Budget) -> Gave {
     if is_trivial(p) {
         return simplex_only(p, Accuracy::Standard, budget);
     }
-    let own = barrier::solve(p, None, None, tolerances, budget);
+    let own = barrier::solve(p, None, None, goal, budget);
     if own.ended != Ended::Failed {
         return given(own);
     }
     // Clarabel takes a hundred iterations more for a digit beyond these.
-    let tolerance = tolerances[0].max(1e-10).min(tolerances[1]);
+    let tolerance = goal.tolerance.max(1e-10).min(goal.enough);
     given(interior::solve(p, None, tolerance, budget))
 }
 
@@ -600,7 +602,13 @@ fn finished(
     if is_trivial(p) {
         return simplex_only(p, accuracy, budget);
     }
-    let own = given(barrier::solve(p, None, layout, [FINE, USEFUL], budget));
+    let own = given(barrier::solve(
+        p,
+        None,
+        layout,
+        [FINE, USEFUL].into(),
+        budget,
+    ));
     let own = match own.ended == Ended::Failed {
         true => own,
         false => match finished_from(p, own, accuracy, strategies, budget) {
@@ -632,7 +640,7 @@ fn finished_from(
             let wide = crossover::is_wide(p, &answer.point) && strategies.run(Strategy::FaceVertex);
             let of_face = wide.then(|| {
                 let (face, centre) = crossover::face(p, &answer.point);
-                barrier::solve(&face, Some(&centre), None, [FINE, USEFUL], budget)
+                barrier::solve(&face, Some(&centre), None, [FINE, USEFUL].into(), budget)
             });
             let of_face = of_face.filter(|f| f.ended == Ended::Solved);
             if let Some(f) = &of_face {

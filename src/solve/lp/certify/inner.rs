@@ -11,24 +11,32 @@
 //! own t_i ≤ 1 and their sum is maximised (Freund, Roundy & Todd 1985): what is still without slack
 //! is held as an equation.
 //!
-//! How much must be mixed in depends on the inequalities that do not hold yet, and those are few: a second point
-//! gives room in proportion to what they lack, often a thousand times as much ([`room_for`]).
+//! How much must be mixed in depends on the inequalities that do not hold yet, and those are few: a point that has
+//! room in proportion to what they lack has often a thousand times as much there ([`room_for`]). It is sought first.
 
-use super::super::Ended;
+use super::super::barrier::Goal;
 use super::super::form::{Problem, Sparse};
-use super::super::interior_only;
+use super::super::{Ended, interior_only};
 use super::polyhedron::Polyhedron;
 use crate::solve::Budget;
 
 /// Slacks below this are none.
 pub(super) const SLACK: f64 = 1e-7;
 
+/// How well a point with room satisfies the equations; and it is found when no point has this part more room.
+const RESIDUAL: f64 = 1e-8;
+const SHORT: f64 = 0.3;
+
+/// Twice the objective at a point, or 1 more than 0.
+fn twice(poly: &Polyhedron, near: &[f64]) -> f64 {
+    let value: f64 = poly.cost.iter().zip(near).map(|(c, x)| c * x).sum();
+    value + if value == 0.0 { 1.0 } else { value.abs() }
+}
+
 /// A point with room around it, as nearly as floating-point numbers go. None: none was found.
 /// `near` is a point that is (nearly) optimal.
 pub(super) fn point(poly: &Polyhedron, near: &[f64], budget: &Budget) -> Option<Vec<f64>> {
-    let value: f64 = poly.cost.iter().zip(near).map(|(c, x)| c * x).sum();
-    let limit = value + if value == 0.0 { 1.0 } else { value.abs() };
-    for limit in [limit, f64::INFINITY] {
+    for limit in [twice(poly, near), f64::INFINITY] {
         if let Some((x, slack)) = search(poly, Room::Equal, limit, budget)
             && slack > SLACK
         {
@@ -38,12 +46,13 @@ pub(super) fn point(poly: &Polyhedron, near: &[f64], budget: &Budget) -> Option<
     Some(search(poly, Room::Each, f64::INFINITY, budget)?.0)
 }
 
-/// A point between `central`, which has room everywhere, and one that has the most room where `lack` (of the
-/// rows, then the columns) is largest.
+/// A point that has the most room where `lack` (of the rows, then the columns) is largest, and a part of the way from there to a
+/// `central` one, which has room everywhere.
 pub(super) fn room_for(
     lack: &[f64],
     poly: &Polyhedron,
-    central: &[f64],
+    near: &[f64],
+    central: Option<&[f64]>,
     budget: &Budget,
 ) -> Option<Vec<f64>> {
     let most = lack.iter().fold(0.0f64, |t, &v| t.max(v));
@@ -51,10 +60,12 @@ pub(super) fn room_for(
         return None;
     }
     let share: Vec<f64> = lack.iter().map(|v| (v / most).max(LEAST)).collect();
-    let value: f64 = poly.cost.iter().zip(central).map(|(c, x)| c * x).sum();
-    let (x, slack) = search(poly, Room::Shares(&share), value, budget)?;
-    let mix = |(a, b): (&f64, &f64)| a + CENTRAL * (b - a);
-    (slack > SLACK).then(|| x.iter().zip(central).map(mix).collect())
+    let (mut x, slack) = search(poly, Room::Shares(&share), twice(poly, near), budget)?;
+    let mix = |(a, b): (&mut f64, &f64)| *a += CENTRAL * (b - *a);
+    if let Some(central) = central {
+        x.iter_mut().zip(central).for_each(mix);
+    }
+    (slack > SLACK).then_some(x)
 }
 
 /// The least share of the room that [`room_for`] asks for.
@@ -142,7 +153,12 @@ fn search(
         p.row_upper.push(limit);
     }
     p.columns = p.rows.transpose(p.cost.len());
-    let run = interior_only(&p, [SLACK; 2], budget);
+    let goal = Goal {
+        tolerance: RESIDUAL,
+        enough: SLACK,
+        share: SHORT,
+    };
+    let run = interior_only(&p, goal, budget);
     if run.ended != Ended::Solved {
         return None;
     }

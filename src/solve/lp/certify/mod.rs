@@ -207,8 +207,8 @@ fn vertex(p: &Problem, near: Point, basis: Option<&[State]>, budget: &Budget) ->
     }
     let solved = simplex.solve(&mut watch(budget, most)) == Ended::Solved;
     if solved {
-        // Down to 1e-14 the interval of a wall of 40 courses is 3e-11 wide, not 4e-10, after six times the pivots.
-        let tolerances = [(1e-11, 1e-11), (1e-13, 1e-12), (1e-14, 1e-13)];
+        // Down to (1e-14, 1e-13) the interval of a wall of 40 courses is 2e-10 wide, not 9e-10, after a hundred times the pivots.
+        let tolerances = [(1e-11, 1e-11), (1e-13, 1e-12)];
         simplex.tighten_to(&tolerances, &mut watch(budget, most));
     }
     let wide = simplex.wide_point().filter(|_| solved);
@@ -221,11 +221,12 @@ fn vertex(p: &Problem, near: Point, basis: Option<&[State]>, budget: &Budget) ->
     })
 }
 
-/// A point near `near` that is proved to be in the polyhedron, and its value.
+/// A point near `near` that is proved to be in the polyhedron, and its value: with the equations that are written as such,
+/// and where inequalities have no room, with those held that have none at a central point.
 fn side(
     p: &Problem,
     poly: &Polyhedron,
-    (mut near, mut near_low): Wide,
+    near: Wide,
     budget: &Budget,
     primal: bool,
 ) -> Result<Interval, Unproved> {
@@ -235,36 +236,65 @@ fn side(
         let (row, column) = if primal { (row, column) } else { (column, row) };
         Err(Unproved { why, row, column })
     };
-    let nothing = if primal {
-        "no point with room inside the rows and bounds was found"
-    } else {
-        "no multipliers with room inside their bounds were found"
+    let value = |x: &Enclosed| match primal {
+        true => polyhedron::primal_value(p, x),
+        false => polyhedron::dual_value(p, x),
     };
-    let Some(inner) = inner::point(poly, &near, budget) else {
-        return fail(nothing, None, None);
+    if let Ok(value) = mixed(poly, near.clone(), None, &value, budget) {
+        return Ok(value);
+    }
+    let Some(inner) = inner::point(poly, &near.0, budget) else {
+        let why = match primal {
+            true => "no point with room inside the rows and bounds was found",
+            false => "no multipliers with room inside their bounds were found",
+        };
+        return fail(why, None, None);
     };
-    let mut inner = inner;
-    let free = hold(poly, &mut near, &mut near_low, &mut inner);
-    let (equations, target, unit) = equations(poly, &near, &inner);
-    let mut stop = || budget.is_over();
-    let mut system = match System::new(poly, equations, &free, unit, &mut stop) {
-        Ok(s) => s,
-        Err(Some(row)) => {
-            return fail(
-                "an equation depends on others: rounding decides whether it holds",
-                Some(row),
-                None,
-            );
+    mixed(poly, near, Some(inner), &value, budget).or_else(|missed| match missed {
+        Missed::Dependent(row) => fail(
+            "an equation depends on others: rounding decides whether it holds",
+            Some(row),
+            None,
+        ),
+        Missed::Numbers => fail("the equations could not be solved reliably", None, None),
+        Missed::Lack(lack) => {
+            let worst = (0..lack.len()).max_by(|&a, &b| lack[a].total_cmp(&lack[b]));
+            let row = worst.filter(|&k| k < poly.m());
+            let column = worst.and_then(|k| k.checked_sub(poly.m()));
+            fail("rounding decides whether it holds", row, column)
         }
-        Err(None) => return fail("the equations could not be solved reliably", None, None),
-    };
-    let what = if primal { "point" } else { "multipliers" };
+    })
+}
+
+/// Why no point was proved.
+enum Missed {
+    /// This equation depends on others.
+    Dependent(usize),
+    /// The equations could not be solved.
+    Numbers,
+    /// What the rows, then the columns, lack.
+    Lack(Vec<f64>),
+}
+
+/// The value of a point between `near` and one with room. What has no room at `inner` is held.
+fn mixed(
+    poly: &Polyhedron,
+    (mut near, mut near_low): Wide,
+    mut inner: Option<Vec<f64>>,
+    value: &dyn Fn(&Enclosed) -> Interval,
+    budget: &Budget,
+) -> Result<Interval, Missed> {
+    let others = inner.as_deref_mut().unwrap_or_default();
+    let free = hold(poly, &mut near, &mut near_low, others);
+    let (equations, target, unit) = equations(poly, &near, inner.as_deref());
+    let mut stop = || budget.is_over();
+    let system = System::new(poly, equations, &free, unit, &mut stop);
+    let mut system = system.map_err(|row| row.map_or(Missed::Numbers, Missed::Dependent))?;
     budget.log(format!(
-        "{what}: {} equations verified after {:.2} s",
+        "{} equations verified after {:.2} s",
         system.rows().len(),
         budget.seconds()
     ));
-    // The value of a mixture; Err: what its rows, then its columns, lack (nothing: numbers broke down).
     let mut at = |inner: &[f64], theta: f64| {
         let mut x = Enclosed {
             high: Vec::with_capacity(poly.n()),
@@ -278,41 +308,43 @@ fn side(
             x.high.push(high);
             x.low.push(low);
         }
-        system.enclose(poly, &mut x).ok_or(Vec::new())?;
+        system.enclose(poly, &mut x).ok_or(Missed::Numbers)?;
         let lack = lack(poly, &x, &system);
         match lack.iter().all(|&v| v == 0.0) {
-            true if primal => Ok(polyhedron::primal_value(p, &x)),
-            true => Ok(polyhedron::dual_value(p, &x)),
-            false => Err(lack),
+            true => Ok(value(&x)),
+            false => Err(Missed::Lack(lack)),
         }
     };
-    let lack = match at(&inner, 0.0) {
-        Ok(value) => return Ok(value),
-        Err(lack) => lack,
+    let lack = match at(&near, 0.0) {
+        Err(Missed::Lack(lack)) => lack,
+        other => return other,
     };
-    let mut best = least(|theta| at(&inner, theta));
-    if !best.as_ref().is_ok_and(|b| b.0 <= LITTLE) {
-        let roomy = inner::room_for(&lack, poly, &inner, budget);
-        let second = roomy.map(|roomy| least(|theta| at(&roomy, theta)));
-        let better = |a: Interval, b: Interval| match primal {
-            true => a.high < b.high,
-            false => a.low > b.low,
-        };
-        best = match (best, second) {
-            (Ok(a), Some(Ok(b))) if better(b.1, a.1) => Ok(b),
-            (Err(_), Some(Ok(b))) => Ok(b),
-            (best, _) => best,
-        };
+    let roomy = inner::room_for(&lack, poly, &near, inner.as_deref(), budget);
+    let mut missed = Missed::Lack(lack.clone());
+    for inner in [roomy, inner].into_iter().flatten() {
+        let mut share = expected(&lack, poly, &inner);
+        while share <= 1.0 {
+            match at(&inner, share) {
+                Ok(value) => return Ok(value),
+                Err(now) => missed = now,
+            }
+            share *= 4.0;
+        }
     }
-    best.map(|b| b.1).or_else(|lack| {
-        let worst = (0..lack.len()).max_by(|&a, &b| lack[a].total_cmp(&lack[b]));
-        let row = worst.filter(|&k| k < poly.m());
-        let column = worst.and_then(|k| k.checked_sub(poly.m()));
-        match worst {
-            None => fail("the equations could not be solved reliably", None, None),
-            Some(_) => fail("rounding decides whether it holds", row, column),
-        }
-    })
+    Err(missed)
+}
+
+/// The share of an inner point that gives what is lacking, as far as its room goes, and little more.
+fn expected(lack: &[f64], poly: &Polyhedron, inner: &[f64]) -> f64 {
+    let rows = (0..poly.m()).map(|i| poly.activity(i, inner));
+    let sides = poly.row_lower.iter().zip(&poly.row_upper);
+    let sides = sides.chain(poly.lower.iter().zip(&poly.upper));
+    let places = rows.chain(inner.iter().copied()).zip(sides).zip(lack);
+    let share = places.filter(|e| *e.1 > 0.0).map(|((v, (l, u)), lack)| {
+        let room = (v - l).min(u - v).max(inner::SLACK);
+        lack / (lack + room)
+    });
+    1.001 * share.fold(f64::MIN_POSITIVE, f64::max)
 }
 
 /// Room of a variable or row between its sides, at two points.
@@ -324,24 +356,31 @@ fn room([l, u]: [f64; 2], [a, b]: [f64; 2]) -> f64 {
 fn hold(poly: &Polyhedron, near: &mut [f64], near_low: &mut [f64], inner: &mut [f64]) -> Vec<bool> {
     let sides = poly.lower.iter().zip(&poly.upper).enumerate();
     let moves = |(j, (&l, &u)): (usize, (&f64, &f64))| {
-        if l != u && room([l, u], [near[j], inner[j]]) > inner::SLACK {
+        let has_room = |inner: &f64| room([l, u], [near[j], *inner]) > inner::SLACK;
+        if l != u && inner.get(j).is_none_or(has_room) {
             return true;
         }
         let at = if near[j] - l <= u - near[j] { l } else { u };
-        (near[j], near_low[j], inner[j]) = (at, 0.0, at);
+        (near[j], near_low[j]) = (at, 0.0);
+        inner.get_mut(j).into_iter().for_each(|v| *v = at);
         false
     };
     sides.map(moves).collect()
 }
 
 /// The rows that are equations or have no room; the value of each row that is to be met; and the size of their terms.
-fn equations(poly: &Polyhedron, near: &[f64], inner: &[f64]) -> (Vec<usize>, Vec<f64>, Vec<f64>) {
+fn equations(
+    poly: &Polyhedron,
+    near: &[f64],
+    inner: Option<&[f64]>,
+) -> (Vec<usize>, Vec<f64>, Vec<f64>) {
     let (mut equations, mut unit) = (Vec::new(), Vec::new());
     let mut target = vec![0.0; poly.m()];
     for (i, target) in target.iter_mut().enumerate() {
         let (l, u) = (poly.row_lower[i], poly.row_upper[i]);
-        let (a, b) = (poly.activity(i, near), poly.activity(i, inner));
-        if l == u || room([l, u], [a, b]) <= inner::SLACK {
+        let a = poly.activity(i, near);
+        let tight = |inner| room([l, u], [a, poly.activity(i, inner)]) <= inner::SLACK;
+        if l == u || inner.is_some_and(tight) {
             *target = if a - l <= u - a { l } else { u };
             equations.push(i);
             let terms = poly.rows.line(i).map(|(j, v)| (v * near[j]).abs());
@@ -349,28 +388,6 @@ fn equations(poly: &Polyhedron, near: &[f64], inner: &[f64]) -> (Vec<usize>, Vec
         }
     }
     (equations, target, unit)
-}
-
-/// A share of the inner point that costs nothing to speak of.
-const LITTLE: f64 = 1e-13;
-
-/// The least share of the inner point that will do where some is needed, to a factor of 2 or so, and what it gives.
-fn least(
-    mut at: impl FnMut(f64) -> Result<Interval, Vec<f64>>,
-) -> Result<(f64, Interval), Vec<f64>> {
-    let coarse = (0..24).map(|k| 2f64.powi(-92 + 4 * k));
-    let mut last = Vec::new();
-    for theta in coarse {
-        match at(theta) {
-            Ok(value) => {
-                let finer = [0.125, 0.25, 0.5].map(|f| theta * f);
-                let found = finer.iter().find_map(|&t| Some((t, at(t).ok()?)));
-                return Ok(found.unwrap_or((theta, value)));
-            }
-            Err(lack) => last = lack,
-        }
-    }
-    Err(last)
 }
 
 /// By how much each row, then each column, of the enclosed point may be outside its sides.
