@@ -205,7 +205,7 @@ pub(super) fn legend_names(scene: &Scene) -> Vec<&str> {
 }
 
 /// A text, with what else is said of it.
-fn words(x: f64, y: f64, more: &str, text: &str) -> String {
+pub(super) fn words(x: f64, y: f64, more: &str, text: &str) -> String {
     format!(
         "<text x=\"{}\" y=\"{}\"{more}>{text}</text>\n",
         Px(x),
@@ -349,11 +349,10 @@ impl Drawing<'_> {
                 let Some(number) = number else { continue };
                 let Element { shape, style, .. } = &self.scene.elements[number];
                 let x = MARGIN + offset;
-                let (fill, stroke) = (style.fill.as_ref(), style.stroke.as_ref());
                 let color = match shape {
-                    Shape::Polygon(_) => fill.map_or("#dde3ea".into(), |p| self.color(p)),
+                    Shape::Polygon(_) => self.color_or(style.fill.as_ref(), "#dde3ea"),
                     Shape::Polyline(_) | Shape::Arrow(..) => {
-                        stroke.map_or(INK.into(), |p| self.color(p))
+                        self.color_or(style.stroke.as_ref(), INK)
                     }
                     _ => self.series_color(number),
                 };
