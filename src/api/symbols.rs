@@ -116,6 +116,8 @@ pub(super) struct Data {
     index: FxHashMap<String, usize>,
 }
 
+/// What is kept of variables and equations, in the order of their columns.
+const RECORD: [u32; 4] = [attribute::L, attribute::M, attribute::LO, attribute::UP];
 const LEVEL: usize = 0;
 const MARGINAL: usize = 1;
 const LOWER: usize = 2;
@@ -130,13 +132,8 @@ impl Data {
                 K::Set { .. } => (SymbolKind::Set, &[0]),
                 K::Alias(_) => (SymbolKind::Set, &[]),
                 K::Parameter { .. } => (SymbolKind::Parameter, &[0]),
-                K::Variable(_) | K::Equation(_) => (
-                    match s.kind {
-                        K::Variable(_) => SymbolKind::Variable,
-                        _ => SymbolKind::Equation,
-                    },
-                    &[attribute::L, attribute::M, attribute::LO, attribute::UP],
-                ),
+                K::Variable(_) => (SymbolKind::Variable, &RECORD),
+                K::Equation(_) => (SymbolKind::Equation, &RECORD),
                 K::Model(_) => (SymbolKind::Model, &[]),
                 K::File(_) => (SymbolKind::File, &[]),
                 K::Acronym(_) => (SymbolKind::Acronym, &[]),

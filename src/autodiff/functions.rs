@@ -84,6 +84,16 @@ impl DomainError {
         }
     }
 
+    /// The same as an outcome.
+    pub(super) fn fail<T>(
+        operation: Operation,
+        args: &[f64],
+        culprit: usize,
+        kind: ErrorKind,
+    ) -> Result<T, Self> {
+        Err(Self::new(operation, args, culprit, kind))
+    }
+
     /// The argument to blame.
     pub fn argument(&self) -> f64 {
         self.arguments[usize::from(self.culprit).min(2)]
@@ -157,20 +167,15 @@ fn clamp(v: f64) -> f64 {
 
 /// `a / b` as GAMS divides.
 pub fn divide(a: f64, b: f64) -> Result<f64, DomainError> {
-    if b.abs() <= TINY {
-        return Err(DomainError::new(
-            Operation::Divide,
-            &[a, b],
-            1,
-            ErrorKind::Singular,
-        ));
+    match b.abs() <= TINY {
+        true => DomainError::fail(Operation::Divide, &[a, b], 1, ErrorKind::Singular),
+        false => Ok(a / b),
     }
-    Ok(a / b)
 }
 
 /// `a ** b`: real power.
 pub fn real_power(a: f64, b: f64) -> Result<f64, DomainError> {
-    let fail = |culprit, kind| Err(DomainError::new(Operation::Power, &[a, b], culprit, kind));
+    let fail = |culprit, kind| DomainError::fail(Operation::Power, &[a, b], culprit, kind);
     if a < 0.0 {
         return fail(0, ErrorKind::Domain);
     }
@@ -192,14 +197,7 @@ pub fn real_power(a: f64, b: f64) -> Result<f64, DomainError> {
 
 /// `power(a, n)` for a whole n.
 pub fn whole_power(a: f64, n: i32) -> Result<f64, DomainError> {
-    let fail = |kind| {
-        Err(DomainError::new(
-            Operation::Power,
-            &[a, f64::from(n)],
-            0,
-            kind,
-        ))
-    };
+    let fail = |kind| DomainError::fail(Operation::Power, &[a, f64::from(n)], 0, kind);
     if n < 0 && a.abs() <= 1e-150 {
         return fail(ErrorKind::Singular);
     }
@@ -228,8 +226,7 @@ pub(super) fn powi(a: f64, n: i32) -> f64 {
 /// argument, or a wrong number of arguments. NaN arguments give NaN.
 pub fn function_value(f: Function, args: &[f64]) -> Result<f64, DomainError> {
     let (least, most) = f.arity();
-    let fail =
-        |culprit: usize, kind| Err(DomainError::new(Operation::Call(f), args, culprit, kind));
+    let fail = |culprit: usize, kind| DomainError::fail(Operation::Call(f), args, culprit, kind);
     if args.len() < least || args.len() > most {
         return fail(0, ErrorKind::Arguments);
     }
@@ -577,13 +574,8 @@ pub(super) fn smoothing_base(f: Function, s: f64) -> [f64; 5] {
         }
         _ => {
             let r = 1.0 / s;
-            [
-                r,
-                -r * r,
-                2.0 * r * r * r,
-                -6.0 * r.powi(4),
-                24.0 * r.powi(5),
-            ]
+            let cube = 2.0 * r * r * r;
+            [r, -r * r, cube, -6.0 * r.powi(4), 24.0 * r.powi(5)]
         }
     }
 }

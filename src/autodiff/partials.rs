@@ -35,12 +35,7 @@ pub fn partials(
     gradient.fill(0.0);
     hessian.fill(0.0);
     if args.iter().any(|a| !a.is_finite()) {
-        return Err(DomainError::new(
-            Operation::Call(f),
-            args,
-            0,
-            ErrorKind::Infinite,
-        ));
+        return DomainError::fail(Operation::Call(f), args, 0, ErrorKind::Infinite);
     }
     match args.len() {
         1 if !matches!(f, F::EDist | F::LseMax | F::LseMin | F::Min | F::Max) => {
@@ -64,28 +59,13 @@ fn check(
     gradient: &[f64],
     hessian: &[f64],
 ) -> Result<(), DomainError> {
-    let bad = |i: usize| {
-        Err(DomainError::new(
-            Operation::Call(f),
-            args,
-            i,
-            ErrorKind::Derivative,
-        ))
-    };
-    for i in (0..args.len()).filter(|&i| active[i]) {
-        if !gradient[i].is_finite() {
-            return bad(i);
-        }
-        if hessian.is_empty() {
-            continue;
-        }
-        for j in (0..=i).filter(|&j| active[j]) {
-            if !hessian[packed(i, j)].is_finite() {
-                return bad(i);
-            }
-        }
+    let curved = |i: usize, j: usize| hessian.is_empty() || hessian[packed(i, j)].is_finite();
+    let exists =
+        |i: usize| gradient[i].is_finite() && (0..=i).filter(|&j| active[j]).all(|j| curved(i, j));
+    match (0..args.len()).find(|&i| active[i] && !exists(i)) {
+        Some(i) => DomainError::fail(Operation::Call(f), args, i, ErrorKind::Derivative),
+        None => Ok(()),
     }
-    Ok(())
 }
 
 /// First and second derivative of a function of one argument, given its value v.
@@ -363,8 +343,8 @@ fn several(f: Function, args: &[f64], active: &[bool], v: f64, g: &mut [f64], h:
                 }
             }
         }
-        F::Div => quotient(x, y, v, g, h),
-        F::Div0 if y.abs() > 1e-150 => quotient(x, y, v, g, h),
+        F::Div => quotient(y, v, g, h),
+        F::Div0 if y.abs() > 1e-150 => quotient(y, v, g, h),
         F::LseMax | F::LseMin => {
             let s = if f == F::LseMax { 1.0 } else { -1.0 };
             softmax(args, s, g);
@@ -447,10 +427,9 @@ pub(super) fn power_partials(
         }
         return;
     }
-    let p = if v != 0.0 && v < HUGE {
-        v / x
-    } else {
-        x.powf(y - 1.0)
+    let p = match v != 0.0 && v < HUGE {
+        true => v / x,
+        false => x.powf(y - 1.0),
     };
     g[0] = y * p;
     if second {
@@ -466,7 +445,8 @@ pub(super) fn power_partials(
     }
 }
 
-fn quotient(x: f64, y: f64, v: f64, g: &mut [f64], h: &mut [f64]) {
+/// Derivatives of v = x / y.
+fn quotient(y: f64, v: f64, g: &mut [f64], h: &mut [f64]) {
     let r = 1.0 / y;
     g[0] = r;
     g[1] = -v / y;
@@ -474,7 +454,6 @@ fn quotient(x: f64, y: f64, v: f64, g: &mut [f64], h: &mut [f64]) {
         h[1] = -r * r;
         h[2] = 2.0 * (v / y) / y;
     }
-    let _ = x;
 }
 
 /// Derivatives of the smoothed functions by the argument and by the place where smoothing begins.

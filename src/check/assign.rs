@@ -127,15 +127,13 @@ impl Compiler {
     /// What is written to.
     fn target(&mut self, s: SymbolId, t: &Reference) -> Checked<Target> {
         let symbol = self.symbols.get(s).clone();
+        let (name, declared) = (&symbol.name, symbol.declared);
         let target = match &symbol.kind {
             SymbolKind::Parameter { .. } if t.attribute.is_none() => Target::Table(symbol.table),
-            SymbolKind::Set { singleton } if t.attribute.is_none() => {
-                if *singleton {
-                    Target::Singleton(symbol.table)
-                } else {
-                    Target::Set(symbol.table)
-                }
-            }
+            SymbolKind::Set { singleton } if t.attribute.is_none() => match singleton {
+                true => Target::Singleton(symbol.table),
+                false => Target::Set(symbol.table),
+            },
             SymbolKind::Alias(root) if t.attribute.is_none() => {
                 Target::Set(self.symbols.get(*root).table)
             }
@@ -150,23 +148,17 @@ impl Compiler {
                     // `z = 3*x;` is meant as the definition of an equation, which is missing then.
                     self.lose_definition();
                     let d = Diagnostic::error("E0310", t.span)
-                        .says(format!(
-                            "the {what} `{}` cannot be assigned itself",
-                            symbol.name
-                        ))
+                        .says(format!("the {what} `{name}` cannot be assigned itself"))
                         .label("which of its numbers?")
-                        .other(symbol.declared, "declared here");
-                    if what == "equation" {
-                        self.lose(&t.name.name);
-                    }
+                        .other(declared, "declared here");
                     let name = &t.name.name;
-                    let help = match what {
-                        "equation" => format!(
-                            "an equation is defined with two dots: `{name}.. left =e= right;`"
-                        ),
-                        _ => format!(
+                    let help = if what == "equation" {
+                        self.lose(name);
+                        format!("an equation is defined with two dots: `{name}.. left =e= right;`")
+                    } else {
+                        format!(
                             "assign `{name}.l`, `{name}.lo`, `{name}.up` or `{name}.fx`; what it must be equal to is said by an equation: `e.. {name} =e= …;`"
-                        ),
+                        )
                     };
                     return d.help(help).fail(self);
                 };
@@ -184,12 +176,8 @@ impl Compiler {
                             .fail(self);
                     }
                     None => {
-                        return self.unknown_attribute(
-                            attr,
-                            &symbol.name,
-                            symbol.kind_name(),
-                            "l, m, lo, up, fx, scale, prior",
-                        );
+                        let known = "l, m, lo, up, fx, scale, prior";
+                        return self.unknown_attribute(attr, name, symbol.kind_name(), known);
                     }
                 }
             }
@@ -198,14 +186,11 @@ impl Compiler {
                 Target::Object(s, self.object_attribute(s, attr)?)
             }
             _ => {
+                let kind = symbol.a_kind();
                 return Diagnostic::error("E0325", t.span)
-                    .says(format!(
-                        "`{}` is {} and cannot be assigned",
-                        symbol.name,
-                        symbol.a_kind()
-                    ))
+                    .says(format!("`{name}` is {kind} and cannot be assigned"))
                     .label("not assignable")
-                    .other(symbol.declared, "declared here")
+                    .other(declared, "declared here")
                     .fail(self);
             }
         };
@@ -214,14 +199,12 @@ impl Compiler {
         if is_set && (self.symbols.get(root).is_domain || root == super::symbols::UNIVERSE) {
             return Diagnostic::error("E0320", t.span)
                 .says(format!(
-                    "the set `{}` cannot be assigned: it is the domain of other symbols",
-                    symbol.name
+                    "the set `{name}` cannot be assigned: it is the domain of other symbols"
                 ))
                 .label("a domain must stay as it is")
-                .other(symbol.declared, "declared here")
+                .other(declared, "declared here")
                 .help(format!(
-                    "declare a subset, `set sub({});`, and assign that",
-                    symbol.name
+                    "declare a subset, `set sub({name});`, and assign that"
                 ))
                 .fail(self);
         }
@@ -231,17 +214,15 @@ impl Compiler {
     /// An error where a set that a loop around runs over is changed.
     pub(super) fn changes_control(&mut self, s: SymbolId, span: Span) -> Checked<()> {
         let root = self.symbols.root(s);
-        if !self
-            .scope
-            .iter()
-            .any(|(c, _)| self.symbols.root(*c) == root)
-        {
+        let mut running = self.scope.iter().map(|(c, _)| self.symbols.root(*c));
+        if running.all(|r| r != root) {
             return Ok(());
         }
-        let name = self.symbols.get(root).name.clone();
-        let message = format!("the loop runs over `{name}`, which is changed here");
+        let name = &self.symbols.get(root).name;
         Diagnostic::error("E0320", span)
-            .says(message)
+            .says(format!(
+                "the loop runs over `{name}`, which is changed here"
+            ))
             .label("bound by the loop")
             .help(format!(
                 "run over the set it is part of: `loop(i$({name}(i)), …)`; or change a copy"
@@ -255,15 +236,9 @@ impl Compiler {
             Target::Table(t) | Target::Set(t) | Target::Singleton(t) => vec![t],
             Target::Fix(s) => {
                 let t = self.symbols.get(s).table;
-                [attribute::L, attribute::LO, attribute::UP]
-                    .map(|o| t + o)
-                    .into()
+                vec![t + attribute::L, t + attribute::LO, t + attribute::UP]
             }
-            Target::Object(..)
-            | Target::Seed
-            | Target::Errors
-            | Target::MostErrors
-            | Target::Ignored => Vec::new(),
+            _ => Vec::new(),
         }
     }
 }

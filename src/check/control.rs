@@ -13,11 +13,8 @@ use crate::syntax::ast::{self, Expr, ExprKind, Ident, Sign};
 impl Compiler {
     /// What a set that is under control stands for: running indices, or what pins it, `loop(i('a'), …)`.
     pub(super) fn controlled(&self, set: SymbolId) -> Option<&[Part]> {
-        self.scope
-            .iter()
-            .rev()
-            .find(|(s, _)| *s == set)
-            .map(|(_, parts)| parts.as_slice())
+        let found = self.scope.iter().rev().find(|(s, _)| *s == set);
+        found.map(|(_, parts)| parts.as_slice())
     }
 
     /// An error where a set stands for what its own indices found, as `s` under `loop(s(i), …)`: it does not run.
@@ -92,10 +89,7 @@ impl Compiler {
         let before = out.conditions.len();
         self.conjuncts(c, &mut out.conditions)?;
         if out.conditions[before..].iter().any(Node::has_random) {
-            let whole = |a: Node, b| {
-                let kind = NodeKind::Binary(BinaryOp::And, Box::new(a), Box::new(b));
-                Node::data(kind, c.span)
-            };
+            let whole = |a, b| Node::binary(BinaryOp::And, a, b, c.span);
             let parts = out.conditions.split_off(before);
             out.conditions.extend(parts.into_iter().reduce(whole));
         }
@@ -164,12 +158,12 @@ impl Compiler {
     }
 
     fn controlled_already<T>(&mut self, set: &Ident, span: Span) -> Checked<T> {
+        let i = &set.name;
         Diagnostic::error("E0305", span)
-            .says(format!("`{}` is bound already", set.name))
+            .says(format!("`{i}` is bound already"))
             .label("bound a second time here")
             .help(format!(
-                "use an alias for the inner index: `alias({0},{0}2);` and write `{0}2` here",
-                set.name
+                "use an alias for the inner index: `alias({i},{i}2);` and write `{i}2` here"
             ))
             .fail(self)
     }
@@ -188,10 +182,9 @@ impl Compiler {
             }),
             _ => None,
         };
-        let (first, second) = if free(self, b).is_some() {
-            (a, b)
-        } else {
-            (b, a)
+        let (first, second) = match free(self, b) {
+            Some(_) => (a, b),
+            None => (b, a),
         };
         let one = match &first.kind {
             ExprKind::Text(t) => vec![Part::Label(self.store.universe.intern(t))],
@@ -266,12 +259,10 @@ impl Compiler {
                 Ok(self.run_over(s, out))
             }
             ExprKind::Apply(name, None, None) => {
-                let free = self.symbols.find(&name.name).filter(|&s| {
-                    let singleton = matches!(
-                        self.symbols.rooted(s).kind,
-                        SymbolKind::Set { singleton: true }
-                    );
-                    self.symbols.get(s).is_set() && !singleton && self.controlled(s).is_none()
+                let free = self.symbols.find_set(&name.name).filter(|&s| {
+                    let kind = &self.symbols.rooted(s).kind;
+                    let singleton = matches!(kind, SymbolKind::Set { singleton: true });
+                    !singleton && self.controlled(s).is_none()
                 });
                 match free {
                     Some(s) => {
@@ -352,11 +343,8 @@ impl Compiler {
             self.used(s, name.span);
             self.run_over(s, out);
         } else if let ExprKind::Apply(name, None, None) = &base.kind {
-            let free = self
-                .symbols
-                .find_set(&name.name)
-                .filter(|&s| self.controlled(s).is_none());
-            if free.is_some() {
+            let set = self.symbols.find_set(&name.name);
+            if set.is_some_and(|s| self.controlled(s).is_none()) {
                 self.domain_item(name, None, base.span, out)?;
             }
         }

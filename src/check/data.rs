@@ -4,7 +4,7 @@ use super::expansion::{Tuples, record_bytes, set_prefix, together};
 use super::functions::{self, RecordAttribute};
 use super::node::{SymbolId, TableId};
 use super::symbols::{DomainPosition, Store, Symbol, SymbolKind, Symbols, attribute};
-use super::{Checked, Compiler, Failed};
+use super::{Checked, Compiler};
 use crate::data::key_index::KeyIndex;
 use crate::data::universe::Label;
 use crate::data::value::{self, EPS};
@@ -38,10 +38,8 @@ impl Seen {
         if self.index.is_some() || last >= key {
             let index = || KeyIndex::build(&self.keys, self.dim, |_| true);
             let index = self.index.get_or_insert_with(index);
-            if index
-                .find_or_insert(key, count as u32, &self.keys)
-                .is_some()
-            {
+            let before = index.find_or_insert(key, count as u32, &self.keys);
+            if before.is_some() {
                 return true;
             }
         }
@@ -123,34 +121,29 @@ fn looks_like_list(
     // `i1` is like `i2`, `a` like `b`.
     let kind = |w: &str| {
         let prefix = w.trim_end_matches(|c: char| c.is_ascii_digit());
-        (prefix.len() < w.len() || w.len() == 1).then(|| {
-            (w.len() == 1)
-                .then_some(prefix.is_empty())
-                .ok_or(prefix.to_lowercase())
-        })
+        match w.len() {
+            1 => Some(Ok(prefix.is_empty())),
+            n => (prefix.len() < n).then(|| Err(prefix.to_lowercase())),
+        }
     };
-    let text = match value {
-        Tail::Text(text, _) => text,
-        _ => "",
+    let (text, at) = match value {
+        Tail::Text(text, at) => (&**text, Some(*at)),
+        _ => ("", None),
     };
     if let Some((from, to)) = meant_range(label, text) {
         return Some((format!("a range is written with `*`: `/ {from}*{to} /`"), 0));
     }
-    match value {
-        Tail::Text(text, at) if map.text(*at) == text => {
-            let like = kind(label)?;
-            let words: Vec<&str> = text.split_whitespace().collect();
-            let list = words.join(", ");
-            let help = format!(
-                "a blank begins the text of an element, a comma the next element: `/ {label}, {list} /`"
-            );
-            words
-                .iter()
-                .all(|w| kind(w) == Some(like.clone()))
-                .then_some((help, words.len()))
-        }
-        _ => None,
+    if map.text(at?) != text {
+        return None;
     }
+    let like = kind(label)?;
+    let words: Vec<&str> = text.split_whitespace().collect();
+    let list = words.join(", ");
+    let help = format!(
+        "a blank begins the text of an element, a comma the next element: `/ {label}, {list} /`"
+    );
+    let alike = words.iter().all(|w| kind(w).as_ref() == Some(&like));
+    alike.then_some((help, words.len()))
 }
 
 /// An error for data of a symbol that has some, or is assigned: data come before all assignments are carried out.
@@ -180,14 +173,9 @@ impl Compiler {
         self.symbols.get_mut(s).open = false;
         let symbol = self.symbols.get(s);
         let modes = self.modes.at(span);
-        let (had, declared, name, table) = (
-            symbol.has_data || symbol.assigned,
-            symbol.declared,
-            symbol.name.clone(),
-            symbol.table,
-        );
+        let (had, table) = (symbol.has_data || symbol.assigned, symbol.table);
         if had && !modes.multi {
-            return second_data(&name, span, declared).fail(self);
+            return second_data(&symbol.name, span, symbol.declared).fail(self);
         }
         if had && modes.multi_replace {
             self.store.table_mut(table).clear();
@@ -301,10 +289,8 @@ impl Compiler {
                 }
                 let record = reader.plain(|p, text| familiar.find(&mut self.store, p, text));
                 let Some((_, span)) = record else { break };
-                if self
-                    .take(1, record_bytes(familiar.key.len()), span)
-                    .is_err()
-                {
+                let bytes = record_bytes(familiar.key.len());
+                if self.take(1, bytes, span).is_err() {
                     break;
                 }
                 plain = true;
@@ -323,11 +309,9 @@ impl Compiler {
             let spelled_out = set_prefix(record.key);
             let parts = spelled_out.as_deref().unwrap_or(record.key);
             // The elements of a set that is not ordered come in another order.
+            let unordered = |set| self.symbols.rooted(set).unordered;
             let all_of_unordered = parts.iter().any(|part| match part {
-                KeyPart::AllOf { set, .. } => self
-                    .symbols
-                    .find(set)
-                    .is_some_and(|set| self.symbols.rooted(set).unordered),
+                KeyPart::AllOf { set, .. } => self.symbols.find(set).is_some_and(unordered),
                 _ => false,
             });
             let text = match &record.value {
@@ -358,11 +342,8 @@ impl Compiler {
         self.symbols.get_mut(s).unordered = elements.unordered;
         let listed = !plain && (lists.len() == 1 || lists.iter().all(|l| l.2 > 1));
         if let Some((span, help, _)) = lists.into_iter().next().filter(|_| listed) {
-            let name = &self.symbols.get(s).name;
-            let message = format!(
-                "`{}` is one element of the set `{name}`",
-                map.text(span).trim_end()
-            );
+            let (name, written) = (&self.symbols.get(s).name, map.text(span).trim_end());
+            let message = format!("`{written}` is one element of the set `{name}`");
             let d = Diagnostic::warning("E0234", span).says(message).help(help);
             self.doubtful.push((s, d));
         }
@@ -434,11 +415,8 @@ impl Compiler {
 
     /// `'a'.'x'`, for messages.
     pub(super) fn key_text(&self, key: &[Label]) -> String {
-        let names: Vec<String> = key
-            .iter()
-            .map(|&l| format!("'{}'", self.store.universe.name(l)))
-            .collect();
-        names.join(".")
+        let quoted = |&l: &Label| format!("'{}'", self.store.universe.name(l));
+        key.iter().map(quoted).collect::<Vec<_>>().join(".")
     }
 
     pub(super) fn parameter_data(
@@ -518,8 +496,7 @@ impl Compiler {
             (Tail::None, [KeyPart::Label { text, span, .. }]) if dim == 0 => {
                 return match number(text) {
                     Some(v) if value::is_undf(v) && !self.modes.at(*span).undf => {
-                        undf_refused(*span).report(self);
-                        Err(Failed)
+                        undf_refused(*span).fail(self)
                     }
                     Some(v) => Ok(v),
                     None => self.acronym(text, *span),
@@ -544,13 +521,13 @@ impl Compiler {
             }
         };
         let name = &self.symbols.get(s).name;
-        let message = format!("the data of `{name}` need a number for each record");
         Diagnostic::error("E0345", record.span)
-            .says(message)
+            .says(format!(
+                "the data of `{name}` need a number for each record"
+            ))
             .label(at)
             .help(help)
-            .report(self);
-        Err(Failed)
+            .fail(self)
     }
 
     /// The first label of each position, for messages.
@@ -608,19 +585,17 @@ impl Compiler {
         let again = key.is_empty() && filling.begun;
         filling.begun = true;
         if again || v != 0.0 && filling.repeats(&mut self.store, key) {
-            let s = filling.symbol;
             let label = self.key_text(key);
-            let name = self.symbols.get(s).name.clone();
-            let what = if key.is_empty() {
-                format!("`{name}` gets two values")
-            } else {
-                format!("the record {label} of `{name}` appears twice")
-            };
-            let help = match key {
-                [] => {
-                    "a scalar has one value; decimals stand behind a point, `1.5`, and no sign parts thousands"
-                }
-                _ => "take one of them out",
+            let name = &self.symbols.get(filling.symbol).name;
+            let (what, help) = match key {
+                [] => (
+                    format!("`{name}` gets two values"),
+                    "a scalar has one value; decimals stand behind a point, `1.5`, and no sign parts thousands",
+                ),
+                _ => (
+                    format!("the record {label} of `{name}` appears twice"),
+                    "take one of them out",
+                ),
             };
             Diagnostic::error("E0341", span)
                 .says(what)
@@ -634,13 +609,9 @@ impl Compiler {
 
     /// `variable x(i) / a.lo 5 /`.
     pub(super) fn record_data(&mut self, s: SymbolId, body: Span, map: &SourceMap) -> Checked<()> {
-        let mut reader = DataReader::new(
-            map.text(body),
-            body.lo,
-            DataKind::Values,
-            self.modes.at(body).undf,
-        )
-        .with_constants(self);
+        let (text, undf) = (map.text(body), self.modes.at(body).undf);
+        let reader = DataReader::new(text, body.lo, DataKind::Values, undf);
+        let mut reader = reader.with_constants(self);
         while let Some(record) = reader.next() {
             let record = match record {
                 Ok(r) => r,

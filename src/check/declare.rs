@@ -22,13 +22,10 @@ impl Compiler {
             let s = self.lookup_set(&d.name)?;
             let root = self.symbols.root(s);
             let symbol = self.symbols.get(root);
+            let (name, declared) = (&d.name.name, symbol.declared);
             if symbol.dim() != 1 {
-                let declared = symbol.declared;
                 return Diagnostic::error("E0334", d.name.span)
-                    .says(format!(
-                        "`{}` has several positions; a domain is one-dimensional",
-                        d.name.name
-                    ))
+                    .says(format!("`{name}` has several positions; a domain is one-dimensional"))
                     .label("not one-dimensional")
                     .other(declared, "declared here")
                     .help("name a set for each index; in the data of a set a range is written `1*5`, and `1:5` or `1.5` is a pair")
@@ -39,11 +36,9 @@ impl Compiler {
                 continue;
             }
             if symbol.dynamic {
-                let declared = symbol.declared;
                 return Diagnostic::error("E0339", d.name.span)
                     .says(format!(
-                        "`{}` is changed by an assignment; it cannot be a domain",
-                        d.name.name
+                        "`{name}` is changed by an assignment; it cannot be a domain"
                     ))
                     .label("a domain must stay as it is")
                     .other(declared, "declared here")
@@ -100,28 +95,24 @@ impl Compiler {
             };
             return self.declare_again(s, d, &kind, domain);
         }
-        let dim = domain.len();
+        let (dim, name) = (domain.len(), &d.name.name);
         if dim > 20 {
             return Diagnostic::error("E0336", d.name.span)
                 .says(format!(
-                    "`{}` has {dim} index positions; there may be 20",
-                    d.name.name
+                    "`{name}` has {dim} index positions; there may be 20"
                 ))
                 .fail(self);
         }
         let table = tables(self, dim);
-        let open = d
-            .domain
-            .as_ref()
-            .is_none_or(|l| l.iter().all(|n| &*n.name.name == "*"))
-            && dim <= usize::from(matches!(kind, SymbolKind::Set { .. }))
-            && matches!(
-                kind,
-                SymbolKind::Set { .. }
-                    | SymbolKind::Parameter { scalar: false }
-                    | SymbolKind::Variable(_)
-                    | SymbolKind::Equation(_)
-            );
+        let most = match kind {
+            SymbolKind::Set { .. } => Some(1),
+            SymbolKind::Parameter { scalar: false }
+            | SymbolKind::Variable(_)
+            | SymbolKind::Equation(_) => Some(0),
+            _ => None,
+        };
+        let universal = d.domain.iter().flatten().all(|n| &*n.name.name == "*");
+        let open = universal && most.is_some_and(|most| dim <= most);
         Ok(self.symbols.add(Symbol {
             name: d.name.name.clone(),
             open,
@@ -154,26 +145,22 @@ impl Compiler {
                 true => "",
                 false => ": capitals do not distinguish names",
             };
-            let listed =
-                matches!(kind, SymbolKind::Model(_)) && matches!(old.kind, SymbolKind::Equation(_));
             let shape = match (unlike, old.dim()) {
                 (true, _) => String::new(),
                 (false, 0) => " without an index".into(),
-                (false, n) => format!(" with {n} ind{}", if n == 1 { "ex" } else { "ices" }),
+                (false, 1) => " with 1 index".into(),
+                (false, n) => format!(" with {n} indices"),
             };
+            let (name, what) = (&d.name.name, old.a_kind());
             return Diagnostic::error("E0333", d.name.span)
-                .says(format!(
-                    "`{}` is declared already, as {}{shape}",
-                    d.name.name,
-                    old.a_kind()
-                ))
+                .says(format!("`{name}` is declared already, as {what}{shape}"))
                 .label("declared again")
                 .other(old.declared, "first declared here")
-                .help(match listed {
-                    true => {
+                .help(match (kind, &old.kind) {
+                    (SymbolKind::Model(_), SymbolKind::Equation(_)) => {
                         "the equations of a model stand between slashes: `model m / e, f /;`".into()
                     }
-                    false => format!("choose another name{capitals}"),
+                    _ => format!("choose another name{capitals}"),
                 })
                 .fail(self);
         }
@@ -193,11 +180,9 @@ impl Compiler {
                 _ => true,
             });
             if !compatible {
+                let name = &d.name.name;
                 return Diagnostic::error("E0335", d.name.span)
-                    .says(format!(
-                        "`{}` is declared already over other sets",
-                        d.name.name
-                    ))
+                    .says(format!("`{name}` is declared already over other sets"))
                     .label("declared again")
                     .other(old.declared, "first declared here")
                     .fail(self);
@@ -239,19 +224,17 @@ impl Compiler {
                         && !self.is_lost(&n.name.name)
                 })
             {
+                let name = &set.symbol.name.name;
                 let names: Vec<&str> = over.iter().map(|n| &*n.name.name).collect();
-                let (name, at) = (
-                    &set.symbol.name.name,
-                    over[0].name.span.to(over[over.len() - 1].name.span),
-                );
-                let d = Diagnostic::error("E0302", at)
+                let names = names.join(", ");
+                let at = over[0].name.span.to(over[over.len() - 1].name.span);
+                Diagnostic::error("E0302", at)
                     .says("none of these is a set")
                     .label("in parentheses stand the sets that it runs over")
                     .help(format!(
-                        "elements stand between slashes: `set {name} / {} /;`",
-                        names.join(", ")
-                    ));
-                d.report(self);
+                        "elements stand between slashes: `set {name} / {names} /;`"
+                    ))
+                    .report(self);
                 self.lose_declaration(name);
                 continue;
             }
@@ -259,21 +242,14 @@ impl Compiler {
             let new = self.symbols.find(&d.name.name).is_none();
             let explicit = d.domain.is_some();
             if d.domain.is_none() && new {
-                d.domain = Some(vec![DomainName {
-                    name: Ident {
-                        name: "*".into(),
-                        span: d.name.span,
-                    },
-                    defines: false,
-                }]);
+                let (name, span) = ("*".into(), d.name.span);
+                let name = Ident { name, span };
+                let defines = false;
+                d.domain = Some(vec![DomainName { name, defines }]);
             }
-            let Ok(s) = self.declare(
-                &d,
-                SymbolKind::Set {
-                    singleton: set.singleton,
-                },
-                |c, n| c.store.add_table(n, 0.0),
-            ) else {
+            let singleton = set.singleton;
+            let kind = SymbolKind::Set { singleton };
+            let Ok(s) = self.declare(&d, kind, |c, n| c.store.add_table(n, 0.0)) else {
                 continue;
             };
             if explicit {
@@ -298,12 +274,9 @@ impl Compiler {
 
     pub(super) fn declare_aliases(&mut self, groups: &[Vec<Ident>]) -> Checked<()> {
         for group in groups {
-            let known = group.iter().find_map(|n| {
-                if &*n.name == "*" {
-                    Some(UNIVERSE)
-                } else {
-                    self.symbols.find_set(&n.name)
-                }
+            let known = group.iter().find_map(|n| match &*n.name {
+                "*" => Some(UNIVERSE),
+                name => self.symbols.find_set(name),
             });
             let Some(root) = known.map(|s| self.symbols.root(s)) else {
                 let span = group[0].span.to(group[group.len() - 1].span);
@@ -349,23 +322,15 @@ impl Compiler {
         map: &SourceMap,
     ) -> Checked<()> {
         for p in list {
-            if let Some(first) = p
-                .symbol
-                .domain
-                .as_ref()
-                .and_then(|d| d.first())
-                .filter(|_| p.scalar)
-            {
-                let name = &p.symbol.name;
+            let mut domain = p.symbol.domain.iter().flatten();
+            if let Some(first) = domain.next().filter(|_| p.scalar) {
+                let (name, index) = (&p.symbol.name.name, &first.name.name);
                 Diagnostic::error("E0336", first.name.span)
-                    .says(format!("`{}` is a scalar: it has no index", name.name))
+                    .says(format!("`{name}` is a scalar: it has no index"))
                     .label("no index here")
-                    .help(format!(
-                        "write `parameter {}({}) …`",
-                        name.name, first.name.name
-                    ))
+                    .help(format!("write `parameter {name}({index}) …`"))
                     .report(self);
-                self.lose_declaration(&name.name);
+                self.lose_declaration(name);
                 continue;
             }
             let kind = SymbolKind::Parameter { scalar: p.scalar };
@@ -388,9 +353,8 @@ impl Compiler {
         map: &SourceMap,
     ) -> Checked<()> {
         for d in list {
-            let Ok(s) = self.declare(d, SymbolKind::Variable(VariableKind::Unstated), |c, n| {
-                c.record_tables(n)
-            }) else {
+            let unstated = SymbolKind::Variable(VariableKind::Unstated);
+            let Ok(s) = self.declare(d, unstated, Self::record_tables) else {
                 continue;
             };
             if kind != VariableKind::Unstated {
@@ -398,16 +362,15 @@ impl Compiler {
                     continue;
                 }
                 self.symbols.get_mut(s).kind = SymbolKind::Variable(kind);
-                let (lo, up) = match kind {
-                    VariableKind::Unstated | VariableKind::Free => {
-                        (f64::NEG_INFINITY, f64::INFINITY)
-                    }
-                    VariableKind::Negative => (f64::NEG_INFINITY, 0.0),
-                    VariableKind::Binary => (0.0, 1.0),
-                    VariableKind::SemiContinuous | VariableKind::SemiInteger => {
-                        (1.0, f64::INFINITY)
-                    }
-                    _ => (0.0, f64::INFINITY),
+                let lo = match kind {
+                    VariableKind::Free | VariableKind::Negative => f64::NEG_INFINITY,
+                    VariableKind::SemiContinuous | VariableKind::SemiInteger => 1.0,
+                    _ => 0.0,
+                };
+                let up = match kind {
+                    VariableKind::Negative => 0.0,
+                    VariableKind::Binary => 1.0,
+                    _ => f64::INFINITY,
                 };
                 let t = self.symbols.get(s).table;
                 self.store.table_mut(t + attribute::LO).set_default(lo);
@@ -426,11 +389,9 @@ impl Compiler {
         let (message, label) = match symbol.kind {
             SymbolKind::Variable(before) if before == kind => return Ok(()),
             SymbolKind::Variable(VariableKind::Unstated) => {
-                let used = symbol.assigned
-                    || self
-                        .equations
-                        .iter()
-                        .any(|e| e.left.mentions(s) || e.right.mentions(s));
+                let mut equations = self.equations.iter();
+                let used =
+                    symbol.assigned || equations.any(|e| e.left.mentions(s) || e.right.mentions(s));
                 if !used || kind == VariableKind::Free {
                     return Ok(());
                 }
@@ -463,8 +424,7 @@ impl Compiler {
         map: &SourceMap,
     ) -> Checked<()> {
         for d in list {
-            let Ok(s) = self.declare(d, SymbolKind::Equation(None), |c, n| c.record_tables(n))
-            else {
+            let Ok(s) = self.declare(d, SymbolKind::Equation(None), Self::record_tables) else {
                 continue;
             };
             if let Some(body) = d.data {
@@ -476,42 +436,27 @@ impl Compiler {
 
     pub(super) fn declare_models(&mut self, list: &[ModelDecl]) -> Checked<()> {
         for m in list {
-            if let Some(items) = &m.items {
-                let mut failed = false;
-                for item in items {
-                    failed |= self.check_model_item(item).is_err();
-                }
-                if failed {
-                    // Known all the same, so that its solve is not a second error.
-                    let _ = self.declare_plain(
-                        &m.name,
-                        SymbolKind::Model(Arc::new(ModelInfo::default())),
-                        m.text.as_deref(),
-                    );
-                    continue;
-                }
+            let mut failed = false;
+            for item in m.items.iter().flatten() {
+                failed |= self.check_model_item(item).is_err();
             }
-            let old =
-                self.symbols
-                    .find(&m.name.name)
-                    .and_then(|s| match &self.symbols.get(s).kind {
-                        SymbolKind::Model(info) => Some(info.items.clone()),
-                        _ => None,
-                    });
+            let old = self.symbols.find(&m.name.name);
+            let old = old.and_then(|s| match &self.symbols.get(s).kind {
+                SymbolKind::Model(info) => info.items.clone(),
+                _ => None,
+            });
             let given = m.items.as_ref().map(|i| self.expand_all(i));
-            let items = match (&given, old.flatten()) {
+            let items = match (given, old) {
+                // Known all the same, so that its solve is not a second error.
+                _ if failed => None,
                 (Some(new), Some(mut old)) if self.modes.at(m.name.span).multi => {
-                    old.extend(new.iter().cloned());
+                    old.extend(new);
                     Some(old)
                 }
-                (Some(new), _) => Some(new.clone()),
-                (None, old) => old,
+                (given, old) => given.or(old),
             };
-            let _ = self.declare_plain(
-                &m.name,
-                SymbolKind::Model(Arc::new(ModelInfo { items })),
-                m.text.as_deref(),
-            );
+            let kind = SymbolKind::Model(Arc::new(ModelInfo { items }));
+            let _ = self.declare_plain(&m.name, kind, m.text.as_deref());
         }
         Ok(())
     }
@@ -520,20 +465,14 @@ impl Compiler {
     fn expand_all(&self, items: &[ModelItem]) -> Vec<ModelItem> {
         let mut out = Vec::new();
         for item in items {
-            match item {
-                ModelItem::All(span) => out.extend(
-                    self.symbols
-                        .iter()
-                        .filter(|(_, s)| matches!(s.kind, SymbolKind::Equation(_)))
-                        .map(|(_, s)| {
-                            ModelItem::Add(Ident {
-                                name: s.name.clone(),
-                                span: *span,
-                            })
-                        }),
-                ),
-                other => out.push(other.clone()),
-            }
+            let ModelItem::All(span) = *item else {
+                out.push(item.clone());
+                continue;
+            };
+            let all = self.symbols.iter().map(|(_, s)| s);
+            let equations = all.filter(|s| matches!(s.kind, SymbolKind::Equation(_)));
+            let names = equations.map(|s| s.name.clone());
+            out.extend(names.map(|name| ModelItem::Add(Ident { name, span })));
         }
         out
     }
@@ -549,16 +488,13 @@ impl Compiler {
                     .fail(c);
             }
             let s = c.lookup(n)?;
-            let symbol = c.symbols.get(s).clone();
+            let symbol = c.symbols.get(s);
+            let what = symbol.a_kind();
             match symbol.kind {
                 SymbolKind::Equation(_) => Ok(()),
                 SymbolKind::Model(_) if model_too => Ok(()),
                 _ => Diagnostic::error("E0338", n.span)
-                    .says(format!(
-                        "`{}` is {}; a model is made of equations",
-                        n.name,
-                        symbol.a_kind()
-                    ))
+                    .says(format!("`{}` is {what}; a model is made of equations", n.name))
                     .label("not an equation")
                     .other(symbol.declared, "declared here")
                     .help("list equations, or `model m / all /;` for all of them; variables are found in them; a pair of a complementarity problem is `e.x`")
@@ -567,21 +503,19 @@ impl Compiler {
         };
         match item {
             ModelItem::All(_) => Ok(()),
-            ModelItem::Add(n) => is_equation(self, n, true),
+            ModelItem::Add(n) | ModelItem::Remove(n) => is_equation(self, n, true),
             ModelItem::Limit(variable, sets) => self.check_limit(variable, sets),
-            ModelItem::Remove(n) => is_equation(self, n, true),
             ModelItem::Pair { rows, column } => {
                 for r in rows {
                     is_equation(self, r, false)?;
                 }
                 let v = self.lookup(column)?;
-                let symbol = self.symbols.get(v).clone();
+                let symbol = self.symbols.get(v);
                 if !matches!(symbol.kind, SymbolKind::Variable(_)) {
+                    let (name, what) = (&column.name, symbol.a_kind());
                     return Diagnostic::error("E0338", column.span)
                         .says(format!(
-                            "`{}` is {}; an equation is paired with a variable",
-                            column.name,
-                            symbol.a_kind()
+                            "`{name}` is {what}; an equation is paired with a variable"
                         ))
                         .label("not a variable")
                         .other(symbol.declared, "declared here")
@@ -595,16 +529,16 @@ impl Compiler {
     /// `x(s)` in the list of a model.
     fn check_limit(&mut self, variable: &Ident, sets: &[Ident]) -> Checked<()> {
         let v = self.lookup(variable)?;
-        let symbol = self.symbols.get(v).clone();
+        let symbol = self.symbols.get(v);
+        let (name, dim) = (&symbol.name, symbol.dim());
         if !matches!(symbol.kind, SymbolKind::Variable(_)) {
             let kind = symbol.kind_name();
             return Diagnostic::error("E0338", variable.span)
-                .says(format!("the {kind} `{}` stands here without indices", symbol.name))
+                .says(format!("the {kind} `{name}` stands here without indices"))
                 .label("only variables are limited to a set")
                 .other(symbol.declared, "declared here")
                 .help(format!(
-                    "write `{}` alone; which rows there are is said where the equation is defined: `e(i)$s(i)..`",
-                    symbol.name
+                    "write `{name}` alone; which rows there are is said where the equation is defined: `e(i)$s(i)..`"
                 ))
                 .fail(self);
         }
@@ -613,25 +547,22 @@ impl Compiler {
                 .says("one set says which columns there are")
                 .label("not one set")
                 .help(format!(
-                    "write `{}(s)` with a set `s` of the dimension of `{0}`",
-                    symbol.name
+                    "write `{name}(s)` with a set `s` of the dimension of `{name}`"
                 ))
                 .fail(self);
         };
         let s = self.lookup_set(set)?;
-        match self.symbols.get(s).dim() == symbol.dim() {
+        match self.symbols.get(s).dim() == dim {
             true => Ok(()),
-            false => self.wrong_dimension(s, set.span, symbol.dim()),
+            false => self.wrong_dimension(s, set.span, dim),
         }
     }
 
     pub(super) fn declare_acronyms(&mut self, list: &[SymbolDecl]) -> Checked<()> {
         for d in list {
-            if self
-                .symbols
-                .find(&d.name.name)
-                .is_some_and(|s| matches!(self.symbols.get(s).kind, SymbolKind::Acronym(_)))
-            {
+            let known = self.symbols.find(&d.name.name);
+            let is_one = |s| matches!(self.symbols.get(s).kind, SymbolKind::Acronym(_));
+            if known.is_some_and(is_one) {
                 continue;
             }
             let n = self.store.acronyms.len() as u32;

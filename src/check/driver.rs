@@ -115,34 +115,13 @@ impl Compiler {
                 _ => None,
             },
             // Others do not count, though some are 0 at 0.
-            NodeKind::Call(
-                Function::Sqr
-                | Function::Sqrt
-                | Function::Abs
-                | Function::Sign
-                | Function::Round
-                | Function::Floor
-                | Function::Ceil
-                | Function::Trunc
-                | Function::Frac
-                | Function::Sin
-                | Function::Tan
-                | Function::ArcSin
-                | Function::ArcTan
-                | Function::Sinh
-                | Function::Tanh,
-                list,
-            ) => match list.as_slice() {
+            NodeKind::Call(f, list) if is_seen_at_zero(*f) => match list.as_slice() {
                 [argument] => self.resting(argument, own),
                 _ => None,
             },
             NodeKind::Aggregate(AggregateOp::Sum | AggregateOp::Sor, d, body) => {
                 let own: Vec<Slot> = own.iter().chain(&d.slots).copied().collect();
-                let members = d.members.iter().map(|m| {
-                    let kind = NodeKind::Data(m.table, m.key.clone());
-                    Node::data(kind, n.span)
-                });
-                let members: Vec<Node> = members.collect();
+                let members: Vec<Node> = d.members.iter().map(|m| record(m, n.span)).collect();
                 let parts = members.iter().chain(&d.conditions).chain([&**body]);
                 self.meeting(parts, &own)
             }
@@ -189,19 +168,11 @@ impl Compiler {
             };
             return (!holds).then_some(None);
         }
-        let NodeKind::Data(t, key) = &number.kind else {
-            return None;
-        };
-        let zero = Box::new(Node::data(NodeKind::Const(0.0), number.span));
-        let scalar = NodeKind::Data(*t, key.clone());
-        let scalar = Box::new(Node::data(scalar, number.span));
-        let (a, b) = if zero_first {
-            (zero, scalar)
-        } else {
-            (scalar, zero)
-        };
-        let kind = NodeKind::Binary(op, a, b);
-        Some(Some(Node::data(kind, number.span)))
+        let (zero, scalar) = (Node::number(0.0, number.span), number.clone());
+        Some(Some(match zero_first {
+            true => Node::binary(op, zero, scalar, number.span),
+            false => Node::binary(op, scalar, zero, number.span),
+        }))
     }
 
     /// Of several expressions: 0 where all are.
@@ -240,9 +211,8 @@ impl Compiler {
             _ => None,
         };
         let single = parts.iter().filter_map(turning).map(|set| {
-            let count = Box::new(Node::data(NodeKind::Card(set), span));
-            let one = Box::new(Node::data(NodeKind::Const(1.0), span));
-            Node::data(NodeKind::Binary(BinaryOp::Eq, count, one), span)
+            let count = Node::data(NodeKind::Card(set), span);
+            Node::binary(BinaryOp::Eq, count, Node::number(1.0, span), span)
         });
         single.reduce(both)
     }
@@ -271,10 +241,8 @@ impl Compiler {
         if !key.parts[..fixed].iter().any(|p| self.turns(p)) {
             return None;
         }
-        let mut unless: Vec<Node> = self
-            .one_turn(&key.parts[..fixed], span)
-            .into_iter()
-            .collect();
+        let one_turn = self.one_turn(&key.parts[..fixed], span);
+        let mut unless: Vec<Node> = one_turn.into_iter().collect();
         let mut parts = key.parts.clone();
         if fixed == parts.len() {
             let kind = NodeKind::Data(table, Key { parts });
@@ -291,7 +259,7 @@ impl Compiler {
         }
         let key = Key { parts };
         domain.members.push(Driver { table, key });
-        let one = Box::new(Node::data(NodeKind::Const(1.0), span));
+        let one = Box::new(Node::number(1.0, span));
         let any = NodeKind::Aggregate(AggregateOp::Sor, Box::new(domain), one);
         unless.push(Node::data(any, span));
         Some(unless)
@@ -338,13 +306,9 @@ fn driven<'b>(body: &'b [Code], around: &Around, out: &mut Found<'b>) -> bool {
         CodeKind::Loop(domain, late, body) => {
             let mut around = around.clone();
             around.slots.extend(&domain.slots);
-            around.guards.extend(domain.members.iter().map(|m| {
-                let kind = NodeKind::Data(m.table, m.key.clone());
-                Node::data(kind, c.span)
-            }));
-            around
-                .guards
-                .extend(domain.conditions.iter().chain(late).cloned());
+            let members = domain.members.iter().map(|m| record(m, c.span));
+            let conditions = domain.conditions.iter().chain(late).cloned();
+            around.guards.extend(members.chain(conditions));
             around.conditional |= !domain.conditions.is_empty() || !late.is_empty();
             driven(body, &around, out)
         }
@@ -440,10 +404,7 @@ impl<'a> Visitor<'a> for LateReading<'_> {
                 let outside = self.inner.len();
                 self.inner.extend(&d.slots);
                 let before = self.guarded;
-                self.guarded |= d.members.iter().any(|m| {
-                    let kind = NodeKind::Data(m.table, m.key.clone());
-                    self.drives(&Node::data(kind, n.span))
-                });
+                self.guarded |= d.members.iter().any(|m| self.drives(&record(m, n.span)));
                 for c in &d.conditions {
                     self.sides(body, c);
                 }
@@ -467,20 +428,28 @@ fn is_fixed(p: &Part, own: &[Slot]) -> bool {
     }
 }
 
+/// Whether GAMS sees that a function of one argument is 0 at 0.
+fn is_seen_at_zero(f: Function) -> bool {
+    use Function::*;
+    matches!(
+        f,
+        Sqr | Sqrt | Abs | Sign | Round | Floor | Ceil | Trunc | Frac
+    ) || matches!(f, Sin | Tan | ArcSin | ArcTan | Sinh | Tanh)
+}
+
+/// What a domain runs over, as what is asked of a turn.
+fn record(m: &Driver, span: Span) -> Node {
+    Node::data(NodeKind::Data(m.table, m.key.clone()), span)
+}
+
 /// `a and b`
 fn both(a: Node, b: Node) -> Node {
     let span = a.span;
-    Node::data(
-        NodeKind::Binary(BinaryOp::And, Box::new(a), Box::new(b)),
-        span,
-    )
+    Node::binary(BinaryOp::And, a, b, span)
 }
 
 /// `a or b`
 fn either(a: Node, b: Node) -> Node {
     let span = a.span;
-    Node::data(
-        NodeKind::Binary(BinaryOp::Or, Box::new(a), Box::new(b)),
-        span,
-    )
+    Node::binary(BinaryOp::Or, a, b, span)
 }

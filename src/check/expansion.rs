@@ -204,19 +204,14 @@ pub(crate) fn range<'a>(from: &'a str, to: &str, most: usize) -> Result<Labels<'
             spell: Box::new(|_, text| text.push_str(from)),
         });
     }
-    let mut prefix = a
-        .iter()
-        .zip(b)
-        .take_while(|(x, y)| x.eq_ignore_ascii_case(y))
-        .count();
+    let alike = |(x, y): &(&u8, &u8)| x.eq_ignore_ascii_case(y);
+    let mut prefix = a.iter().zip(b).take_while(alike).count();
     while prefix > 0 && a[prefix - 1].is_ascii_digit() {
         prefix -= 1;
     }
     let digits = |s: &[u8]| {
-        s[prefix..]
-            .iter()
-            .take_while(|c| c.is_ascii_digit())
-            .count()
+        let digits = s[prefix..].iter();
+        digits.take_while(|c| c.is_ascii_digit()).count()
     };
     if a.iter().chain(b).all(u8::is_ascii_alphabetic) {
         return letters(from, to).ok_or(NoRange::Unlike);
@@ -237,11 +232,8 @@ pub(crate) fn range<'a>(from: &'a str, to: &str, most: usize) -> Result<Labels<'
         return Err(NoRange::TooLong(lo.abs_diff(hi).saturating_add(1)));
     }
     // A leading zero, or equal lengths, fixes the width.
-    let width = if na.starts_with('0') || da == db {
-        da
-    } else {
-        0
-    };
+    let fixed = na.starts_with('0') || da == db;
+    let width = if fixed { da } else { 0 };
     let (head, tail) = (&from[..prefix], &from[prefix + da..]);
     let number = move |n: usize| match lo <= hi {
         true => lo + n as u64,
@@ -305,16 +297,15 @@ impl Compiler {
         out.labels.clear();
         out.factors.clear();
         out.texts.clear();
-        let dim = self.symbols.get(s).dim();
+        let dim = out.width;
         // `set.i` stands for all elements of i.
-        let spelled_out = [parts].into_iter().find_map(set_prefix);
+        let spelled_out = set_prefix(parts);
         let parts = spelled_out.as_deref().unwrap_or(parts);
         // One label per position is what data mostly are.
         let store = &self.store;
-        if parts
-            .iter()
-            .all(|p| matches!(p, KeyPart::Label { text, .. } if !store.is_phantom(text)))
-        {
+        let is_label =
+            |p: &KeyPart| matches!(p, KeyPart::Label { text, .. } if !store.is_phantom(text));
+        if parts.iter().all(is_label) {
             if parts.len() != dim {
                 return self.wrong_record(s, span, parts.len());
             }
@@ -341,14 +332,10 @@ impl Compiler {
         let at = self.diagnostics.len();
         let failed = self.wrong_dimension(s, span, given);
         let example = self.example(s).join(".");
-        if let Some(d) = self
-            .diagnostics
-            .get_mut(at)
-            .filter(|_| example.contains('.'))
-        {
-            d.help = Some(format!(
-                "dots stand between the labels of a record: `/ {example} /`"
-            ));
+        let d = self.diagnostics.get_mut(at);
+        if let Some(d) = d.filter(|_| example.contains('.')) {
+            let help = format!("dots stand between the labels of a record: `/ {example} /`");
+            d.help = Some(help);
         }
         failed
     }
@@ -602,11 +589,13 @@ pub(super) fn set_prefix<'a>(parts: &[KeyPart<'a>]) -> Option<Vec<KeyPart<'a>>> 
     let mut rest = parts.iter();
     while let Some(p) = rest.next() {
         match (is_set(p), rest.clone().next()) {
-            (true, Some(KeyPart::Label { text, span, .. })) => {
-                out.push(KeyPart::AllOf {
-                    set: text,
-                    span: *span,
-                });
+            (
+                true,
+                Some(&KeyPart::Label {
+                    text: set, span, ..
+                }),
+            ) => {
+                out.push(KeyPart::AllOf { set, span });
                 rest.next();
             }
             _ => out.push(p.clone()),

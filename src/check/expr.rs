@@ -131,30 +131,20 @@ impl Compiler {
                 };
                 Ok(Node { member, ..node })
             }
+            // All of them are checked, even behind one that fails.
             ExprKind::Sum(terms) => {
-                let mut out = Vec::with_capacity(terms.len());
-                let mut failed = false;
-                for (sign, t) in terms {
-                    match self.expr(t) {
-                        Ok(n) => out.push((*sign == Sign::Minus, n)),
-                        Err(Failed) => failed = true,
-                    }
-                }
-                if failed {
-                    return Err(Failed);
-                }
-                self.sum(out, span)
+                let nodes: Vec<_> = terms.iter().map(|(_, t)| self.expr(t)).collect();
+                let signed = terms.iter().zip(nodes);
+                let signed = signed.map(|((sign, _), n)| Ok((*sign == Sign::Minus, n?)));
+                self.sum(signed.collect::<Checked<_>>()?, span)
             }
             ExprKind::Product(factors) => {
-                let mut out = Vec::with_capacity(factors.len());
-                for (f, x) in factors {
-                    out.push(self.expr(x).map(|node| match f {
-                        Factor::Divide => divisor(x, node),
-                        Factor::Multiply => (false, node),
-                    }));
-                }
-                let factors = out.into_iter().collect::<Checked<_>>()?;
-                self.product(factors, span)
+                let nodes: Vec<_> = factors.iter().map(|(_, x)| self.expr(x)).collect();
+                let factors = factors.iter().zip(nodes).map(|((f, x), node)| match f {
+                    Factor::Divide => Ok(divisor(x, node?)),
+                    Factor::Multiply => Ok((false, node?)),
+                });
+                self.product(factors.collect::<Checked<_>>()?, span)
             }
             ExprKind::Binary(BinaryOp::Divide, a, right) => {
                 let (Ok(x), Ok(y)) = (self.expr(a), self.expr(right)) else {
@@ -183,15 +173,8 @@ impl Compiler {
                             .fail(self)
                     }
                     _ => {
-                        let logical = matches!(
-                            op,
-                            BinaryOp::And
-                                | BinaryOp::Or
-                                | BinaryOp::Xor
-                                | BinaryOp::Implies
-                                | BinaryOp::Equivalent
-                        );
-                        if !logical {
+                        use BinaryOp::{And, Equivalent, Implies, Or, Xor};
+                        if !matches!(op, And | Or | Xor | Implies | Equivalent) {
                             self.number(&a)?;
                             self.number(&b)?;
                         }
@@ -240,11 +223,8 @@ impl Compiler {
     /// `t = '2023'`, `i = j`: an index is no number.
     fn labels_compared(&mut self, a: &Expr, b: &Expr, span: Span) -> Checked<()> {
         let set = |e: &Expr| {
-            let s = self.symbols.find(&bare(e)?.name)?;
-            self.symbols
-                .get(s)
-                .is_set()
-                .then(|| bare(e).map(|n| n.name.to_string()))?
+            let name = &bare(e)?.name;
+            self.symbols.find_set(name).map(|_| name.to_string())
         };
         let side = |e: &Expr| match &e.kind {
             ExprKind::Text(t) => Some(format!("'{t}'")),
@@ -316,20 +296,18 @@ impl Compiler {
             let l = terms.iter().all(|(_, n)| n.linear);
             return Ok(combine(NodeKind::Sum(terms), span, v, l));
         }
-        let mut all: Option<Node> = None;
-        for (minus, n) in terms {
-            let n = if minus {
-                Node::membership(NodeKind::Not(Box::new(n)), span)
-            } else {
-                n
-            };
-            let op = if minus { BinaryOp::And } else { BinaryOp::Or };
-            all = Some(match all {
-                Some(a) => Node::membership(NodeKind::Binary(op, Box::new(a), Box::new(n)), span),
-                None => n,
-            });
-        }
-        Ok(all.unwrap_or_else(|| Node::number(0.0, span)))
+        let terms = terms.into_iter().map(|(minus, n)| match minus {
+            true => (
+                BinaryOp::And,
+                Node::membership(NodeKind::Not(Box::new(n)), span),
+            ),
+            false => (BinaryOp::Or, n),
+        });
+        let all = terms.reduce(|(_, a), (op, n)| {
+            let both = NodeKind::Binary(op, Box::new(a), Box::new(n));
+            (op, Node::membership(both, span))
+        });
+        Ok(all.map_or_else(|| Node::number(0.0, span), |(_, n)| n))
     }
 
     /// Factors multiplied. Of memberships, it is the intersection.
@@ -347,10 +325,8 @@ impl Compiler {
             factors.iter().for_each(|(_, n)| self.index_as_number(n));
         }
         let v = factors.iter().filter(|(_, n)| n.has_var).count();
-        let l = v <= 1
-            && factors
-                .iter()
-                .all(|(div, n)| n.linear && !(*div && n.has_var));
+        let linear = |(divide, n): &(bool, Node)| n.linear && !(*divide && n.has_var);
+        let l = v <= 1 && factors.iter().all(linear);
         let node = combine(NodeKind::Product(factors), span, v > 0, l);
         Ok(Node { member, ..node })
     }
@@ -395,27 +371,21 @@ impl Compiler {
                 }
                 self.used(s, span);
                 let key = match arguments {
-                    None => {
-                        let parts = self.set_index(s, name)?;
-                        Key { parts }
-                    }
+                    None => Key {
+                        parts: self.set_index(s, name)?,
+                    },
                     Some(_) => self.key(s, indices, span)?,
                 };
                 Ok(Node::membership(NodeKind::Data(symbol.table, key), span))
             }
             SymbolKind::Parameter { .. } => {
                 if let Some(attr) = attr {
+                    let (name, kind) = (&symbol.name, symbol.a_kind());
                     return Diagnostic::error("E0314", attr.span)
                         .says(format!("a parameter has no attribute `.{}`", attr.name))
-                        .help(format!(
-                            "a parameter is its values: write `{}`",
-                            symbol.name
-                        ))
+                        .help(format!("a parameter is its values: write `{name}`"))
                         .label("not there")
-                        .other(
-                            symbol.declared,
-                            format!("`{}` is {}", symbol.name, symbol.a_kind()),
-                        )
+                        .other(symbol.declared, format!("`{name}` is {kind}"))
                         .fail(self);
                 }
                 let key = self.key(s, indices, span)?;
@@ -424,30 +394,22 @@ impl Compiler {
             }
             SymbolKind::Variable(_) | SymbolKind::Equation(_) => {
                 let is_variable = matches!(symbol.kind, SymbolKind::Variable(_));
+                let kind = symbol.a_kind();
                 match attr {
                     Some(a) => self.record_attribute(s, a, indices, span),
                     None if is_variable && self.in_equation => {
                         let key = self.key(s, indices, span)?;
-                        Ok(Node {
-                            kind: NodeKind::Var(s, key),
-                            span,
-                            has_var: true,
-                            linear: true,
-                            member: false,
-                        })
+                        Ok(combine(NodeKind::Var(s, key), span, true, true))
                     }
                     None if is_variable && self.modes.at(span).dot_l => {
                         let key = self.key(s, indices, span)?;
-                        Ok(Node::data(
-                            NodeKind::Data(symbol.table + attribute::L, key),
-                            span,
-                        ))
+                        let level = NodeKind::Data(symbol.table + attribute::L, key);
+                        Ok(Node::data(level, span))
                     }
                     None => Diagnostic::error("E0310", name.span)
                         .says(format!(
-                            "`{}` is {}; outside equations it needs an attribute",
-                            symbol.name,
-                            symbol.a_kind()
+                            "`{}` is {kind}; outside equations it needs an attribute",
+                            symbol.name
                         ))
                         .label("which of its numbers?")
                         .other(symbol.declared, "declared here")
@@ -488,12 +450,8 @@ impl Compiler {
     ) -> Checked<Node> {
         let symbol = self.symbols.get(s).clone();
         let Some(which) = functions::record_attribute(&a.name) else {
-            return self.unknown_attribute(
-                a,
-                &symbol.name,
-                symbol.kind_name(),
-                "l, m, lo, up, fx, scale, prior, slack, range",
-            );
+            let known = "l, m, lo, up, fx, scale, prior, slack, range";
+            return self.unknown_attribute(a, &symbol.name, symbol.kind_name(), known);
         };
         self.suits(&symbol, a)?;
         let key = self.key(s, indices, span)?;
@@ -538,9 +496,8 @@ impl Compiler {
         known: &str,
     ) -> Checked<T> {
         let meant = functions::meant_attribute(&a.name, kind);
-        let near = meant
-            .or_else(|| nearest(&a.name, known.split(", ")))
-            .map(str::to_string);
+        let near = meant.or_else(|| nearest(&a.name, known.split(", ")));
+        let near = near.map(|n| format!(".{n}"));
         let known = match known.match_indices(", ").nth(11) {
             Some((at, _)) => format!("{}, …", &known[..at]),
             None => known.to_string(),
@@ -551,15 +508,15 @@ impl Compiler {
                 a.name
             ))
             .label("not an attribute");
-        const KINDS: [&str; 7] = [
-            "type", "kind", "binary", "integer", "positive", "free", "bin",
-        ];
-        let is_kind = kind == "variable" && KINDS.iter().any(|k| a.name.eq_ignore_ascii_case(k));
-        match is_kind {
-            true => d.help(format!(
-                "the kind stands in the declaration: `binary variable {name};`"
-            )),
-            false => d.did_you_mean(near.map(|n| format!(".{n}")), format!("there are: {known}")),
+        match a.name.to_lowercase().as_str() {
+            "type" | "kind" | "binary" | "integer" | "positive" | "free" | "bin"
+                if kind == "variable" =>
+            {
+                d.help(format!(
+                    "the kind stands in the declaration: `binary variable {name};`"
+                ))
+            }
+            _ => d.did_you_mean(near, format!("there are: {known}")),
         }
         .fail(self)
     }
@@ -594,14 +551,11 @@ impl Compiler {
             }
             "te" | "tl" if self.texts_allowed => {
                 let parts = self.set_index(s, name)?;
-                return Ok(Node::data(
-                    if lower == "tl" && parts.len() == 1 {
-                        NodeKind::LabelText(parts[0].clone())
-                    } else {
-                        NodeKind::ElementText(symbol.table, Key { parts })
-                    },
-                    span,
-                ));
+                let kind = match parts.as_slice() {
+                    [one] if lower == "tl" => NodeKind::LabelText(one.clone()),
+                    _ => NodeKind::ElementText(symbol.table, Key { parts }),
+                };
+                return Ok(Node::data(kind, span));
             }
             _ => {}
         }
@@ -632,10 +586,8 @@ impl Compiler {
                 .help(format!("ask one of its indices: `i.{lower}`"))
                 .fail(self);
         }
-        Ok(Node::data(
-            NodeKind::LabelAttribute(which, symbol.table, parts.remove(0)),
-            span,
-        ))
+        let kind = NodeKind::LabelAttribute(which, symbol.table, parts.remove(0));
+        Ok(Node::data(kind, span))
     }
 
     /// A function call.
@@ -652,13 +604,7 @@ impl Compiler {
             return self.unknown_name(name, arguments);
         };
         if args.len() < low || args.len() > high {
-            let count = |n: usize| {
-                if n == 1 {
-                    "1 argument".to_string()
-                } else {
-                    format!("{n} arguments")
-                }
-            };
+            let count = |n: usize| format!("{n} argument{}", if n == 1 { "" } else { "s" });
             let wanted = match (low, high) {
                 (l, h) if l == h => count(l),
                 (l, usize::MAX) => format!("{l} or more arguments"),
@@ -684,10 +630,9 @@ impl Compiler {
                 }
                 let v = nodes.iter().any(|n| n.has_var);
                 if v && functions::first_argument_must_be_data(f) && nodes[0].has_var {
+                    let message = "may not depend on a variable";
                     return Diagnostic::error("E0318", nodes[0].span)
-                        .says(format!(
-                            "the first argument of `{lower}` may not depend on a variable"
-                        ))
+                        .says(format!("the first argument of `{lower}` {message}"))
                         .fail(self);
                 }
                 Ok(combine(NodeKind::Call(f, nodes), span, v, false))
@@ -739,13 +684,8 @@ impl Compiler {
         if card {
             self.used(s, n.span);
             let symbol = self.symbols.get(s);
-            if matches!(
-                symbol.kind,
-                SymbolKind::Model(_)
-                    | SymbolKind::File(_)
-                    | SymbolKind::Acronym(_)
-                    | SymbolKind::Figure(_)
-            ) {
+            use SymbolKind::{Acronym, Figure, File, Model};
+            if matches!(symbol.kind, Model(_) | File(_) | Acronym(_) | Figure(_)) {
                 return self.lookup_set(n).and(Err(Failed));
             }
             return Ok(Node::data(NodeKind::Card(symbol.table), span));
@@ -758,10 +698,8 @@ impl Compiler {
         if parts.len() != 1 {
             return self.wrong_dimension(s, n.span, 1);
         }
-        Ok(Node::data(
-            NodeKind::Ord(self.symbols.get(s).table, parts.remove(0)),
-            span,
-        ))
+        let kind = NodeKind::Ord(self.symbols.get(s).table, parts.remove(0));
+        Ok(Node::data(kind, span))
     }
 
     /// `sameas`, and `diag`, which is the same as a number.
@@ -780,20 +718,17 @@ impl Compiler {
         }
         let b = parts.remove(1);
         let kind = NodeKind::SameAs(parts.remove(0), b);
-        Ok(if member {
-            Node::membership(kind, span)
-        } else {
-            Node::data(kind, span)
-        })
+        let node = Node::data(kind, span);
+        Ok(Node { member, ..node })
     }
 
     /// A text where `card` and `ord` may have one: `'abc'`, `i.tl`, `i.te(i)`, `p.ts`.
     fn text_argument(&mut self, e: &Expr) -> Checked<Option<Node>> {
         let is_text = match &e.kind {
             ExprKind::Text(_) => true,
-            ExprKind::Apply(_, Some(a), _) => ["tl", "te", "ts", "tn"]
-                .iter()
-                .any(|t| a.name.eq_ignore_ascii_case(t)),
+            ExprKind::Apply(_, Some(a), _) => {
+                matches!(a.name.to_lowercase().as_str(), "tl" | "te" | "ts" | "tn")
+            }
             _ => false,
         };
         if !is_text {
@@ -828,10 +763,10 @@ impl Compiler {
             (Callee::Ord | Callee::Card, _) => {
                 format!("write `{lower}(i)` with the name of a set")
             }
-            _ => format!(
-                "write `{lower}({})`",
-                ["x", "y", "z"][..low.min(3)].join(", ")
-            ),
+            _ => {
+                let some = ["x", "y", "z"][..low.min(3)].join(", ");
+                format!("write `{lower}({some})`")
+            }
         }
     }
 
@@ -883,10 +818,9 @@ impl Compiler {
             }
             nearest(&name.name, known).map(str::to_string)
         });
-        let what = if arguments.is_some() {
-            "symbol or function"
-        } else {
-            "symbol"
+        let what = match arguments {
+            Some(_) => "symbol or function",
+            None => "symbol",
         };
         let mut d = Diagnostic::error("E0301", name.span)
             .says(format!("`{}` is not known", name.name))
@@ -937,8 +871,6 @@ fn divisor(written: &Expr, node: Node) -> (bool, Node) {
         return (true, node);
     }
     let span = node.span;
-    (
-        false,
-        Node::data(NodeKind::Product(vec![(true, node)]), span),
-    )
+    let once = NodeKind::Product(vec![(true, node)]);
+    (false, Node::data(once, span))
 }

@@ -62,20 +62,15 @@ impl Compiler {
     pub(super) fn declare_figure(&mut self, f: &Figure) -> Checked<()> {
         self.texts_allowed = true;
         let mut elements = Vec::new();
-        let mut failed = false;
         for e in &f.elements {
-            match self.scoped(|c| c.figure_element(e)) {
-                Ok(x) => elements.push(x),
-                Err(Failed) => failed = true,
-            }
+            elements.extend(self.scoped(|c| c.figure_element(e)));
         }
         self.texts_allowed = false;
-        let kind = SymbolKind::Figure(Arc::new(FigureCode {
-            title: f.title.clone(),
-            elements,
-        }));
+        let whole = elements.len() == f.elements.len();
+        let title = f.title.clone();
+        let kind = SymbolKind::Figure(Arc::new(FigureCode { title, elements }));
         self.declare_plain(&f.name, kind, f.title.as_deref())?;
-        if failed { Err(Failed) } else { Ok(()) }
+        whole.then_some(()).ok_or(Failed)
     }
 
     fn figure_element(&mut self, e: &FigureElement) -> Checked<FigureElementCode> {
@@ -145,12 +140,10 @@ impl Compiler {
                 let d = Diagnostic::error("E0370", span)
                     .says(format!("`{kind}` has no argument `{name}`"))
                     .label("unknown argument");
+                let mut names = known.iter().copied();
                 let near = match name {
-                    "color" | "colour" => known
-                        .iter()
-                        .copied()
-                        .find(|k| matches!(*k, "fill" | "stroke")),
-                    _ => nearest(name, known.iter().copied()),
+                    "color" | "colour" => names.find(|k| matches!(*k, "fill" | "stroke")),
+                    _ => nearest(name, names),
                 };
                 let help = match known.is_empty() {
                     true => format!("`{kind}` takes values without names"),
@@ -160,21 +153,14 @@ impl Compiler {
             }
             self.fits_argument(kind, name, value)?;
         }
-        for r in required {
-            if !code.arguments.iter().any(|(n, _)| n.as_deref() == Some(r)) {
-                return Diagnostic::error("E0373", e.kind.span)
-                    .says(format!("`{kind}` needs `{r}`"))
-                    .label(format!("`{r} = …` is missing"))
-                    .help(format!(
-                        "write `{kind}(…) {};`",
-                        required
-                            .iter()
-                            .map(|r| format!("{r} = …"))
-                            .collect::<Vec<_>>()
-                            .join(", ")
-                    ))
-                    .fail(self);
-            }
+        let given = |r: &str| code.arguments.iter().any(|(n, _)| n.as_deref() == Some(r));
+        if let Some(r) = required.iter().find(|r| !given(r)) {
+            let all: Vec<String> = required.iter().map(|r| format!("{r} = …")).collect();
+            return Diagnostic::error("E0373", e.kind.span)
+                .says(format!("`{kind}` needs `{r}`"))
+                .label(format!("`{r} = …` is missing"))
+                .help(format!("write `{kind}(…) {};`", all.join(", ")))
+                .fail(self);
         }
         self.has_indices(kind, e.kind.span, code)
     }

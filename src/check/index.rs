@@ -62,33 +62,35 @@ impl Compiler {
         if self.symbols.is_subset(s, d) {
             return Ok(());
         }
-        let name = |id| self.symbols.get(id).name.clone();
-        let (an, dn, sn) = (name(a), name(d), name(s));
-        let why = match s == a {
-            true => format!("`{an}` is not a subset of `{dn}`"),
-            false => format!("`{an}` runs over `{sn}` there"),
-        };
-        let (on, declared) = (
-            self.symbols.get(of).name.clone(),
-            self.symbols.get(of).declared,
-        );
-        let a_root = self.symbols.rooted(a).declared;
-        let same = self.symbols.is_subset(d, a);
-        let help = if s != a {
-            format!("declare `{an}` over the sets that `{on}` runs over, or name its indices")
-        } else if same {
-            format!(
-                "`{dn}` is the smaller set: use an index that runs over `{dn}`, or declare `{on}` over `{an}`"
+        let name = |id| &self.symbols.get(id).name;
+        let (an, dn, sn, on) = (name(a), name(d), name(s), name(of));
+        let (why, help) = if s != a {
+            (
+                format!("`{an}` runs over `{sn}` there"),
+                format!("declare `{an}` over the sets that `{on}` runs over, or name its indices"),
             )
         } else {
-            format!(
-                "declare `{an}` as a subset (`set {an}({dn})`) or as an alias of `{dn}`; equal labels alone do not make it one"
+            let why = format!("`{an}` is not a subset of `{dn}`");
+            (
+                why,
+                match self.symbols.is_subset(d, a) {
+                    true => format!(
+                        "`{dn}` is the smaller set: use an index that runs over `{dn}`, or declare `{on}` over `{an}`"
+                    ),
+                    false => format!(
+                        "declare `{an}` as a subset (`set {an}({dn})`) or as an alias of `{dn}`; equal labels alone do not make it one"
+                    ),
+                },
             )
         };
+        let (declared, a_root) = (
+            self.symbols.get(of).declared,
+            self.symbols.rooted(a).declared,
+        );
+        let place = format!("position {} of `{on}`", position + 1);
         Diagnostic::error("E0306", span)
             .says(format!(
-                "`{an}` may not stand at position {} of `{on}`, which runs over `{dn}`",
-                position + 1
+                "`{an}` may not stand at {place}, which runs over `{dn}`"
             ))
             .label(why)
             .other(declared, format!("`{on}` is declared here"))
@@ -103,34 +105,27 @@ impl Compiler {
         span: Span,
         given: usize,
     ) -> Checked<T> {
-        let s = self.symbols.get(of).clone();
+        let s = self.symbols.get(of);
         let plural = |n: usize| match n {
             0 => "no index".to_string(),
             1 => "1 index".to_string(),
             n => format!("{n} indices"),
         };
-        let names = self.symbols.domain_names(&s);
-        let shape = if names.is_empty() {
-            s.name.to_string()
-        } else {
-            format!("{}({})", s.name, names.join(","))
+        let names = self.symbols.domain_names(s).join(",");
+        let (name, has) = (&s.name, plural(s.dim()));
+        let shape = match names.is_empty() {
+            true => name.to_string(),
+            false => format!("{name}({names})"),
+        };
+        let are = match given {
+            0 => "none is".to_string(),
+            1 => "1 is".to_string(),
+            n => format!("{n} are"),
         };
         Diagnostic::error("E0304", span)
-            .says(format!(
-                "`{}` has {}, but {} given here",
-                s.name,
-                plural(s.dim()),
-                match given {
-                    0 => "none is".to_string(),
-                    1 => "1 is".to_string(),
-                    n => format!("{n} are"),
-                }
-            ))
+            .says(format!("`{name}` has {has}, but {are} given here"))
             .label(format!("{} here", plural(given)))
-            .other(
-                s.declared,
-                format!("declared with {} here", plural(s.dim())),
-            )
+            .other(s.declared, format!("declared with {has} here"))
             .help(match (s.dim(), &s.kind) {
                 (0, SymbolKind::Parameter { .. } | SymbolKind::Variable(_)) if given == 1 => {
                     format!("write `{shape}`; a product is `{shape}*(…)`")
@@ -289,22 +284,20 @@ impl Compiler {
             return Ok((0..dim).map(|p| Part::Singleton(t, p as u8)).collect());
         }
         let (declared, is_label) = (root.declared, self.store.universe.get(&name.name).is_some());
-        let mut help = if self.in_equation {
-            format!(
-                "sum over it, `sum({0}, …)`, or add it to the equation's domain, `e({0})..`",
-                name.name
-            )
-        } else {
-            format!(
-                "sum over it, `sum({0}, …)`; write it on the left, `p({0}) = …`; or run over it, `loop({0}, … );`",
-                name.name
-            )
+        let i = &name.name;
+        let mut help = match self.in_equation {
+            true => format!(
+                "sum over it, `sum({i}, …)`, or add it to the equation's domain, `e({i})..`"
+            ),
+            false => format!(
+                "sum over it, `sum({i}, …)`; write it on the left, `p({i}) = …`; or run over it, `loop({i}, … );`"
+            ),
         };
         if is_label {
-            help.push_str(&format!("; a label is quoted: `'{}'`", name.name));
+            help.push_str(&format!("; a label is quoted: `'{i}'`"));
         }
         let d = Diagnostic::error("E0303", name.span)
-            .says(format!("the index `{}` is not bound here", name.name))
+            .says(format!("the index `{i}` is not bound here"))
             .label("nothing says which elements")
             .other(declared, "the set is declared here")
             .help(help);
@@ -320,22 +313,16 @@ impl Compiler {
         span: Span,
     ) -> Checked<u32> {
         let symbol = self.symbols.get(of);
-        let DomainPosition::Set(d) = symbol
-            .domain
-            .get(position)
-            .cloned()
-            .unwrap_or(DomainPosition::Universe)
-        else {
+        let Some(DomainPosition::Set(d)) = symbol.domain.get(position) else {
             return self.known_label(text, span);
         };
-        let set = self.symbols.rooted(d);
+        let set = self.symbols.rooted(*d);
+        let table = self.store.table(set.table);
         let known = self.store.universe.get(text);
-        if let Some(l) = known
-            && (set.dynamic || self.store.table(set.table).find(&[l]).is_some())
-        {
-            return Ok(l);
+        match known.filter(|&l| set.dynamic || table.find(&[l]).is_some()) {
+            Some(l) => Ok(l),
+            None => self.not_a_member(text, "'", of, position, span),
         }
-        self.not_a_member(text, "'", of, position, span)
     }
 
     /// A label that must be in the universe, unless this place may bring it there.
@@ -393,15 +380,15 @@ impl Compiler {
         let set = self.symbols.get(set_id);
         let table = self.store.table(set.table);
         if table.is_empty() && !set.has_data && !set.assigned {
-            let (name, declared) = (set.name.clone(), set.declared);
-            let d = Diagnostic::error("E0319", span)
+            let name = set.name.clone();
+            Diagnostic::error("E0319", span)
                 .says(format!("the set `{name}` has no elements"))
                 .label("no label is in it")
-                .other(declared, "declared without elements here")
+                .other(set.declared, "declared without elements here")
                 .help(format!(
                     "write its elements between slashes: `set {name} / {quote}{text}{quote}, … /;`"
-                ));
-            d.report(self);
+                ))
+                .report(self);
             self.lose_declaration(&name);
             return Err(Failed);
         }
@@ -409,32 +396,27 @@ impl Compiler {
             (0..table.len().min(10_000) as u32).map(|r| self.store.universe.name(table.key(r)[0]));
         let (name, set_name) = (&symbol.name, &set.name);
         let near = nearest(text, known);
-        let (elsewhere, mut lost) = (self.member_elsewhere(of, position, text), false);
-        let help = match self.misread(set.table, text) {
-            Some(help) => help,
-            None if near.is_some() => {
-                format!("did you mean `{quote}{}{quote}`?", near.unwrap_or_default())
-            }
-            None if !quote.is_empty() && self.symbols.find_set(text).is_some() => {
-                format!("an index stands without quotes: `{text}`; quotes make it one label")
-            }
-            None if elsewhere.is_some() => {
-                lost = quote.is_empty();
-                elsewhere.unwrap_or_default()
-            }
-            None if quote.is_empty() => format!(
-                "add `{text}` to `{set_name}`, or correct the label; a label with a blank stands in quotes"
-            ),
-            None => format!("add `{quote}{text}{quote}` to `{set_name}`, or correct the label"),
+        let (written, mut lost) = (format!("`{quote}{text}{quote}`"), false);
+        let help = if let Some(help) = self.misread(set.table, text) {
+            help
+        } else if let Some(near) = near {
+            format!("did you mean `{quote}{near}{quote}`?")
+        } else if !quote.is_empty() && self.symbols.find_set(text).is_some() {
+            format!("an index stands without quotes: `{text}`; quotes make it one label")
+        } else if let Some(elsewhere) = self.member_elsewhere(of, position, text) {
+            lost = quote.is_empty();
+            elsewhere
+        } else {
+            let blanks = match quote {
+                "" => "; a label with a blank stands in quotes",
+                _ => "",
+            };
+            format!("add {written} to `{set_name}`, or correct the label{blanks}")
         };
+        let place = format!("position {} of `{name}`", position + 1);
         let mut d = Diagnostic::error("E0308", span)
-            .says(format!(
-                "`{quote}{text}{quote}` is not a member of the set `{set_name}`"
-            ))
-            .label(format!(
-                "position {} of `{name}` runs over `{set_name}`",
-                position + 1
-            ))
+            .says(format!("{written} is not a member of the set `{set_name}`"))
+            .label(format!("{place} runs over `{set_name}`"))
             .other(set.declared, format!("`{set_name}` is declared here"))
             .help(help);
         self.doubtful.retain(|(s, _)| *s != set_id);
@@ -463,22 +445,19 @@ impl Compiler {
             DomainPosition::Set(s) if n != position && has(*s) => Some((n, *s)),
             _ => None,
         });
+        let of = &symbol.name;
         if let Some((n, set)) = other {
+            let (set, n) = (&self.symbols.get(set).name, n + 1);
             return Some(format!(
-                "`{text}` is a member of `{}`, at position {} of `{}`: {EXCHANGED}, with dots between them in data",
-                self.symbols.get(set).name,
-                n + 1,
-                symbol.name
+                "`{text}` is a member of `{set}`, at position {n} of `{of}`: {EXCHANGED}, with dots between them in data"
             ));
         }
-        let sets = self
-            .symbols
-            .iter()
-            .skip(1)
-            .filter(|(s, d)| d.is_set() && self.symbols.root(*s) == *s && has(*s));
+        let own = |s: SymbolId| self.symbols.root(s) == s;
+        let sets = self.symbols.iter().skip(1);
+        let sets = sets.filter(|(s, d)| d.is_set() && own(*s) && has(*s));
         let mut names = sets.map(|(_, d)| &d.name);
         let (name, none) = (names.next()?, names.next().is_none());
-        none.then(|| format!("`{text}` is a member of `{name}`: correct the label, or declare `{}` over `{name}`", symbol.name))
+        none.then(|| format!("`{text}` is a member of `{name}`: correct the label, or declare `{of}` over `{name}`"))
     }
 
     /// Where a label went that a set lacks: into the text of an element, or a range with a hyphen.
@@ -592,33 +571,26 @@ impl Compiler {
             return Ok(());
         }
         let root = self.symbols.rooted(s);
-        let (declared, name) = (root.declared, root.name.clone());
+        let name = &root.name;
+        let d = Diagnostic::error("E0309", span).other(root.declared, "declared here");
+        let needs = format!("{what} needs an ordered set;");
         if matches!(root.kind, SymbolKind::Set { singleton: true }) {
-            return Diagnostic::error("E0309", span)
-                .says(format!(
-                    "{what} needs an ordered set; `{name}` is a singleton"
-                ))
-                .other(declared, "declared here")
-                .fail(self);
-        }
-        if root.dynamic {
-            return Diagnostic::error("E0309", span)
-                .says(format!(
-                    "{what} needs an ordered set; `{name}` is changed by an assignment"
-                ))
+            d.says(format!("{needs} `{name}` is a singleton"))
+        } else if root.dynamic {
+            d.says(format!("{needs} `{name}` is changed by an assignment"))
                 .label("a dynamic set has no order")
-                .other(declared, "declared here")
                 .help("use the set that it is a subset of, or `$offOrder`")
-                .fail(self);
+        } else if root.unordered {
+            d.says(format!(
+                "{needs} the labels of `{name}` appeared earlier in another order"
+            ))
+            .label("not ordered")
+            .help(
+                "declare the set with its labels in the wanted order before they appear elsewhere",
+            )
+        } else {
+            return Ok(());
         }
-        if root.unordered {
-            return Diagnostic::error("E0309", span)
-                .says(format!("{what} needs an ordered set; the labels of `{name}` appeared earlier in another order"))
-                .label("not ordered")
-                .other(declared, "declared here")
-                .help("declare the set with its labels in the wanted order before they appear elsewhere")
-                .fail(self);
-        }
-        Ok(())
+        .fail(self)
     }
 }

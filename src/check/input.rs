@@ -85,31 +85,22 @@ impl Compiler {
         }
         let dim = symbol.dim();
         let given = input.data.keys();
-        if let Some((n, key)) = given.unlike(dim) {
-            return Diagnostic::error("E0377", span)
-                .says(format!(
-                    "`{}` has {dim} index position{}; {} given for it has {}",
-                    symbol.name,
-                    if dim == 1 { "" } else { "s" },
-                    record(&symbol.name, &key, n),
-                    key.len()
-                ))
-                .label("declared here")
-                .fail(self);
-        }
-        if let SymbolKind::Set { singleton: true } = symbol.kind
-            && given.len() > 1
-        {
-            return Diagnostic::error("E0377", span)
-                .says(format!(
-                    "`{}` is a singleton; {} members were given",
-                    symbol.name,
-                    given.len()
-                ))
-                .label("declared here")
-                .fail(self);
-        }
-        Ok(())
+        let (name, many) = (&symbol.name, given.len());
+        let message = match (given.unlike(dim), &symbol.kind) {
+            (Some((n, key)), _) => {
+                let plural = if dim == 1 { "" } else { "s" };
+                let (record, has) = (record(name, &key, n), key.len());
+                format!(
+                    "`{name}` has {dim} index position{plural}; {record} given for it has {has}"
+                )
+            }
+            (None, SymbolKind::Set { singleton: true }) if many > 1 => {
+                format!("`{name}` is a singleton; {many} members were given")
+            }
+            _ => return Ok(()),
+        };
+        let d = Diagnostic::error("E0377", span).says(message);
+        d.label("declared here").fail(self)
     }
 
     fn fill_from_input(&mut self, s: SymbolId, input: &Input, span: Span) -> Checked<()> {
@@ -181,19 +172,16 @@ impl Compiler {
         let members = table.all_keys().iter().take(10_000);
         let members = members.map(|&l| self.store.universe.name(l));
         let near = nearest(key[position], members).map(str::to_string);
-        let (set_name, declared) = (domain.name.clone(), domain.declared);
+        let (set, label) = (domain.name.clone(), key[position]);
+        let record = record(&self.symbols.get(s).name, &key, r);
+        let help = format!("give `{set}` this member too, or leave the record out");
         Diagnostic::error("E0377", span)
             .says(format!(
-                "{} was given from outside, but `{}` is not a member of `{set_name}`",
-                record(&self.symbols.get(s).name, &key, r),
-                key[position]
+                "{record} was given from outside, but `{label}` is not a member of `{set}`"
             ))
             .label("declared here")
-            .other(declared, format!("`{set_name}` is declared here"))
-            .did_you_mean(
-                near,
-                format!("give `{set_name}` this member too, or leave the record out"),
-            )
+            .other(domain.declared, format!("`{set}` is declared here"))
+            .did_you_mean(near, help)
             .fail(self)
     }
 
@@ -211,18 +199,19 @@ impl Compiler {
                         .help("data from outside are for sets and parameters")
                 }
                 None => {
-                    let message =
-                        format!("data were given for `{name}`, which the model does not declare");
-                    let takes = |k: &SymbolKind| {
-                        matches!(k, SymbolKind::Set { .. } | SymbolKind::Parameter { .. })
-                    };
-                    let known = self.symbols.iter().skip(1).filter(|(_, s)| takes(&s.kind));
-                    Diagnostic::error("E0376", Span::default())
-                        .says(message)
-                        .did_you_mean(
-                            nearest(name, known.map(|(_, s)| &*s.name)),
-                            format!("declare it: `parameter {name};`"),
+                    let known = self.symbols.iter().skip(1).map(|(_, s)| s);
+                    let known = known.filter(|s| {
+                        matches!(
+                            s.kind,
+                            SymbolKind::Set { .. } | SymbolKind::Parameter { .. }
                         )
+                    });
+                    let near = nearest(name, known.map(|s| &*s.name));
+                    Diagnostic::error("E0376", Span::default())
+                        .says(format!(
+                            "data were given for `{name}`, which the model does not declare"
+                        ))
+                        .did_you_mean(near, format!("declare it: `parameter {name};`"))
                 }
             };
             d.report(self);

@@ -24,12 +24,9 @@ impl Compiler {
         let model = self.lookup_model(&s.model)?;
         let symbol = self.symbols.get(model).clone();
         let SymbolKind::Model(info) = &symbol.kind else {
+            let (name, kind) = (&symbol.name, symbol.a_kind());
             return Diagnostic::error("E0350", s.model.span)
-                .says(format!(
-                    "`{}` is {}, not a model",
-                    symbol.name,
-                    symbol.a_kind()
-                ))
+                .says(format!("`{name}` is {kind}, not a model"))
                 .label("a model is expected")
                 .other(symbol.declared, "declared here")
                 .help("declare one: `model m / all /;`")
@@ -288,87 +285,77 @@ impl Compiler {
     /// Refuses equations that no `..` defines and that nothing takes out of the model.
     fn not_defined(&mut self, undefined: &[(SymbolId, Span)]) -> Checked<()> {
         for &(e, at) in undefined {
-            let (name, declared) = (
-                self.symbols.get(e).name.clone(),
-                self.symbols.get(e).declared,
-            );
-            if self.is_lost(&name) || self.lacks_equations() {
+            let symbol = self.symbols.get(e);
+            let (name, declared) = (&symbol.name, symbol.declared);
+            if self.is_lost(name) || self.lacks_equations() {
                 continue;
             }
+            let help =
+                format!("define it: `{name}.. left =e= right;`, or take it out of the model");
             Diagnostic::error("E0356", at)
                 .says(format!(
                     "the equation `{name}` is in the model but is not defined"
                 ))
                 .label("in this model")
                 .other(declared, "declared here, and defined nowhere")
-                .help(format!(
-                    "define it: `{name}.. left =e= right;`, or take it out of the model"
-                ))
+                .help(help)
                 .report(self);
         }
         undefined.is_empty().then_some(()).ok_or(Failed)
     }
 
-    fn objective(
-        &mut self,
-        name: &crate::syntax::ast::Ident,
-        rows: &[ModelRow],
-    ) -> Checked<SymbolId> {
-        let v = self.lookup(name)?;
+    fn objective(&mut self, id: &Ident, rows: &[ModelRow]) -> Checked<SymbolId> {
+        let v = self.lookup(id)?;
         let symbol = self.symbols.get(v).clone();
+        let (name, declared) = (&symbol.name, symbol.declared);
         let SymbolKind::Variable(kind) = symbol.kind else {
-            return Diagnostic::error("E0357", name.span)
-                .says(format!("the objective must be a variable; `{}` is {}", symbol.name, symbol.a_kind()))
+            return Diagnostic::error("E0357", id.span)
+                .says(format!("the objective must be a variable; `{name}` is {}", symbol.a_kind()))
                 .label("not a variable")
-                .other(symbol.declared, "declared here")
+                .other(declared, "declared here")
                 .help("declare a free variable and an equation that defines it: `variable z; equation cost; cost.. z =e= …;`")
                 .fail(self);
         };
         if symbol.dim() > 0 {
-            return Diagnostic::error("E0358", name.span)
+            return Diagnostic::error("E0358", id.span)
                 .says(format!(
-                    "the objective must be a single number; `{}` is indexed",
-                    symbol.name
+                    "the objective must be a single number; `{name}` is indexed"
                 ))
                 .label("indexed")
-                .other(symbol.declared, "declared with indices here")
+                .other(declared, "declared with indices here")
                 .help("declare a free scalar variable and define it in an equation")
                 .fail(self);
         }
         if !matches!(kind, VariableKind::Free | VariableKind::Unstated) {
-            return Diagnostic::error("E0359", name.span)
-                .says(format!(
-                    "the objective `{}` must be a free variable",
-                    symbol.name
-                ))
+            return Diagnostic::error("E0359", id.span)
+                .says(format!("the objective `{name}` must be a free variable"))
                 .label("restricted in sign")
-                .other(symbol.declared, "declared here")
+                .other(declared, "declared here")
                 .help(format!(
-                    "declare it by `free variable {0};`, and bound it by an equation if it must be",
-                    symbol.name
+                    "declare it by `free variable {name};`, and bound it by an equation if it must be"
                 ))
                 .fail(self);
         }
-        let mentioned = rows.iter().any(|r| {
-            let e = &self.equations[r.definition];
-            e.left.mentions(v) || e.right.mentions(v)
-        });
         // An equation that failed to compile may be the one that mentions it.
-        if !mentioned && self.errors() == 0 {
-            return Diagnostic::error("E0360", name.span)
+        if !self.is_mentioned(v, rows) && self.errors() == 0 {
+            return Diagnostic::error("E0360", id.span)
                 .says(format!(
-                    "the objective `{}` stands in no equation of the model",
-                    symbol.name
+                    "the objective `{name}` stands in no equation of the model"
                 ))
                 .label("in no equation")
-                .other(symbol.declared, "declared here")
+                .other(declared, "declared here")
                 .help(format!(
-                    "define it in an equation of the model: `cost.. {} =e= …;`",
-                    symbol.name
+                    "define it in an equation of the model: `cost.. {name} =e= …;`"
                 ))
                 .fail(self);
         }
         Ok(v)
+    }
+
+    /// Whether a variable stands in one of these equations.
+    fn is_mentioned(&self, v: SymbolId, rows: &[ModelRow]) -> bool {
+        let mut equations = rows.iter().map(|r| &self.equations[r.definition]);
+        equations.any(|e| e.left.mentions(v) || e.right.mentions(v))
     }
 
     /// Whether an equation may stand in a model of this type.
@@ -377,87 +364,74 @@ impl Compiler {
         let name = self.symbols.get(e.symbol).name.clone();
         let linear_only = using.is_linear();
         let smooth_only = !using.allows_kinks() && !linear_only;
+        let is_dnlp = using == ProblemType::Dnlp;
         let mut found: Option<(Span, String, &'static str, String)> = None;
-        for side in [&e.left, &e.right] {
-            side.each(|n| {
-                if found.is_some() || !n.has_var {
-                    return;
-                }
-                if let NodeKind::Binary(op, ..) = &n.kind
-                    && *op != BinaryOp::Power
-                {
-                    if using != ProblemType::Dnlp {
-                        found = Some((
-                            n.span,
-                            "a relation between variables has no derivative".into(),
-                            "E0362",
-                            "use `dnlp`, or a formulation with additional variables and equations"
-                                .into(),
-                        ));
+        let mut look = |n: &Node| {
+            if found.is_some() || !n.has_var {
+                return;
+            }
+            let (what, code, help): (String, _, String) = match &n.kind {
+                NodeKind::Binary(op, ..) if *op != BinaryOp::Power => {
+                    if is_dnlp {
+                        return;
                     }
-                } else if let NodeKind::Not(_) = &n.kind
-                    && using != ProblemType::Dnlp
-                {
-                    found = Some((
-                        n.span,
-                        "`not` of a variable has no derivative".into(),
-                        "E0362",
-                        "use `dnlp`".into(),
-                    ));
-                } else if linear_only && !n.linear && n.children_are_linear() {
-                    let what = match &n.kind {
-                        NodeKind::Product(_) => {
-                            "variables are multiplied or divided here".to_string()
-                        }
-                        NodeKind::Binary(..) => "a variable is raised to a power here".to_string(),
+                    let help =
+                        "use `dnlp`, or a formulation with additional variables and equations";
+                    let what = "a relation between variables has no derivative";
+                    (what.into(), "E0362", help.into())
+                }
+                NodeKind::Not(_) if !is_dnlp => {
+                    let what = "`not` of a variable has no derivative";
+                    (what.into(), "E0362", "use `dnlp`".into())
+                }
+                kind if linear_only && !n.linear && n.children_are_linear() => {
+                    let what = match kind {
+                        NodeKind::Product(_) => "variables are multiplied or divided here".into(),
+                        NodeKind::Binary(..) => "a variable is raised to a power here".into(),
                         NodeKind::Call(f, _) => {
                             format!("`{}` of a variable is not linear", f.name())
                         }
-                        _ => "this is not linear in the variables".to_string(),
+                        _ => "this is not linear in the variables".into(),
                     };
-                    found = Some((
-                        n.span,
-                        what,
-                        "E0361",
-                        match &n.kind {
-                            NodeKind::Call(Function::IfThen, a) if !a[0].has_var => "a condition on data stands behind `$`: `x$c + y$(not c)` is linear".into(),
-                            NodeKind::Call(f, _) if f.is_nonsmooth() => "solve it `using dnlp`, or write it with inequalities: `y =g= x; y =g= -x` for `y = abs(x)`".to_string(),
-                            _ => format!(
-                            "solve it `using nlp`, or reformulate the equation `{name}`; a level (`x.l`) is data and may be multiplied"
-                        ),
-                        },
-                    ));
-                } else if smooth_only {
-                    match &n.kind {
-                        NodeKind::Call(f, _) if f.is_nonsmooth() => {
-                            found = Some((n.span, format!("`{}` of a variable is not smooth", f.name()), "E0362", "solve it `using dnlp`, or reformulate with additional variables and inequalities".into()));
-                        }
-                        NodeKind::Aggregate(AggregateOp::Smin | AggregateOp::Smax, ..) => {
-                            found = Some((n.span, "`smin` and `smax` of variables are not smooth".into(), "E0362", "solve it `using dnlp`, or use a variable with one inequality per member".into()));
-                        }
-                        _ => {}
-                    }
+                    let help = match kind {
+                        NodeKind::Call(Function::IfThen, a) if !a[0].has_var => "a condition on data stands behind `$`: `x$c + y$(not c)` is linear".into(),
+                        NodeKind::Call(f, _) if f.is_nonsmooth() => "solve it `using dnlp`, or write it with inequalities: `y =g= x; y =g= -x` for `y = abs(x)`".into(),
+                        _ => format!("solve it `using nlp`, or reformulate the equation `{name}`; a level (`x.l`) is data and may be multiplied"),
+                    };
+                    (what, "E0361", help)
                 }
-            });
-        }
-        match found {
-            None => Ok(()),
-            Some((span, what, code, help)) => {
-                let kind = if linear_only {
-                    format!(
-                        "the equation `{name}` is not linear, but the model is solved as `{using}`"
-                    )
-                } else {
-                    format!("the equation `{name}` may not stand in a model solved as `{using}`")
-                };
-                Diagnostic::error(code, span)
-                    .says(kind)
-                    .label(what)
-                    .other(solve, "solved here")
-                    .help(help)
-                    .fail(self)
+                NodeKind::Call(f, _) if smooth_only && f.is_nonsmooth() => {
+                    let help = "solve it `using dnlp`, or reformulate with additional variables and inequalities";
+                    let what = format!("`{}` of a variable is not smooth", f.name());
+                    (what, "E0362", help.into())
+                }
+                NodeKind::Aggregate(AggregateOp::Smin | AggregateOp::Smax, ..) if smooth_only => {
+                    let help =
+                        "solve it `using dnlp`, or use a variable with one inequality per member";
+                    let what = "`smin` and `smax` of variables are not smooth";
+                    (what.into(), "E0362", help.into())
+                }
+                _ => return,
+            };
+            found = Some((n.span, what, code, help));
+        };
+        e.left.each(&mut look);
+        e.right.each(&mut look);
+        let Some((span, what, code, help)) = found else {
+            return Ok(());
+        };
+        let kind = match linear_only {
+            true => {
+                format!("the equation `{name}` is not linear, but the model is solved as `{using}`")
             }
-        }
+            false => format!("the equation `{name}` may not stand in a model solved as `{using}`"),
+        };
+        Diagnostic::error(code, span)
+            .says(kind)
+            .label(what)
+            .other(solve, "solved here")
+            .help(help)
+            .fail(self)
     }
 
     /// The sets of the loops around a solve may not run in its equations: in GAMS neither, and whether the
@@ -476,16 +450,13 @@ impl Compiler {
         };
         let name = &self.symbols.get(set).name;
         let equation = &self.symbols.get(equation).name;
-        let message = format!(
-            "`{name}` runs in a loop around this solve and in the equation `{equation}` of the model"
-        );
         let error = Diagnostic::error("E0369", solve)
-            .says(message)
+            .says(format!(
+                "`{name}` runs in a loop around this solve and in the equation `{equation}` of the model"
+            ))
             .label(format!("solved once for each `{name}`"))
             .other(defined, format!("`{name}` runs here too"))
-            .help(format!(
-                "loop over an alias: `alias({name},{name}_);` and `loop({name}_, …)`"
-            ));
+            .help(format!("loop over an alias: `alias({name},{name}_);` and `loop({name}_, …)`"));
         error.fail(self)
     }
 
@@ -496,49 +467,39 @@ impl Compiler {
         using: ProblemType,
         solve: Span,
     ) -> Checked<()> {
+        use VariableKind::{Free, Negative, Positive, Unstated};
         if using.discrete() != Discrete::Forbidden {
             return Ok(());
         }
         let mut discrete = None;
-        for r in rows {
-            let e = &self.equations[r.definition];
-            for side in [&e.left, &e.right] {
-                side.each(|n| {
-                    if let NodeKind::Var(v, _) = &n.kind
-                        && let SymbolKind::Variable(k) = self.symbols.get(*v).kind
-                        && !matches!(
-                            k,
-                            VariableKind::Unstated
-                                | VariableKind::Free
-                                | VariableKind::Positive
-                                | VariableKind::Negative
-                        )
-                    {
-                        discrete = discrete.or(Some((*v, n.span)));
-                    }
-                });
-            }
+        let equations = rows.iter().map(|r| &self.equations[r.definition]);
+        for side in equations.flat_map(|e| [&e.left, &e.right]) {
+            side.each(|n| {
+                if let NodeKind::Var(v, _) = &n.kind
+                    && let SymbolKind::Variable(k) = self.symbols.get(*v).kind
+                    && !matches!(k, Unstated | Free | Positive | Negative)
+                {
+                    discrete.get_or_insert((*v, n.span));
+                }
+            });
         }
         let Some((v, at)) = discrete else {
             return Ok(());
         };
-        let (name, declared) = (
-            self.symbols.get(v).name.clone(),
-            self.symbols.get(v).declared,
-        );
+        let (name, declared) = (&self.symbols.get(v).name, self.symbols.get(v).declared);
         let relaxed = using.relaxation();
-        Diagnostic::error("E0363", at)
+        let decides = &relaxed.name()[1..];
+        let d = Diagnostic::error("E0363", at)
             .says(format!(
                 "`{name}` is a discrete variable, but the model is solved as `{using}`"
             ))
             .label("discrete")
             .other(declared, "declared here")
-            .other(solve, "solved here")
-            .help(format!(
-                "`solve … using {}` decides it; `using {relaxed}` solves the relaxation",
-                &relaxed.name()[1..]
-            ))
-            .fail(self)
+            .other(solve, "solved here");
+        d.help(format!(
+            "`solve … using {decides}` decides it; `using {relaxed}` solves the relaxation"
+        ))
+        .fail(self)
     }
 
     /// The rules of matching that can be seen in the text.
@@ -549,16 +510,9 @@ impl Compiler {
                 .filter_map(|r| Some((r.pair?, r.definition, r.span)))
         };
         for (v, definition, span) in paired() {
-            let appears = rows.iter().any(|r| {
-                let e = &self.equations[r.definition];
-                e.left.mentions(v) || e.right.mentions(v)
-            });
             let is_only = paired().filter(|p| p.1 == definition).count() == 1;
-            if !appears && is_only {
-                let (name, declared) = (
-                    self.symbols.get(v).name.clone(),
-                    self.symbols.get(v).declared,
-                );
+            if !self.is_mentioned(v, rows) && is_only {
+                let (name, declared) = (&self.symbols.get(v).name, self.symbols.get(v).declared);
                 Diagnostic::error("E0368", span)
                     .says(format!(
                         "the variable `{name}` of a pair stands in no equation of the model"
@@ -605,42 +559,31 @@ impl Compiler {
 
     /// An equation and its partner run over the same indices.
     fn check_domains(&mut self, e: SymbolId, v: SymbolId, at: Span) -> Checked<()> {
-        let (eq, var) = (self.symbols.get(e).clone(), self.symbols.get(v).clone());
-        if eq.dim() != var.dim() {
-            return Diagnostic::error("E0365", at)
+        let (eq, var) = (self.symbols.get(e), self.symbols.get(v));
+        let (e, n, v, m) = (&eq.name, eq.dim(), &var.name, var.dim());
+        let pairs = |(a, b): (&DomainPosition, &DomainPosition)| match (a, b) {
+            (DomainPosition::Set(a), DomainPosition::Set(b)) => {
+                self.symbols.is_subset(*a, *b) || self.symbols.is_subset(*b, *a)
+            }
+            _ => true,
+        };
+        let d = if n != m {
+            Diagnostic::error("E0365", at)
                 .says(format!(
-                    "`{}` has {} indices and `{}` has {}: they cannot be paired",
-                    eq.name,
-                    eq.dim(),
-                    var.name,
-                    var.dim()
+                    "`{e}` has {n} indices and `{v}` has {m}: they cannot be paired"
                 ))
                 .label("different dimensions")
-                .other(eq.declared, "the equation")
-                .other(var.declared, "the variable")
-                .fail(self);
-        }
-        let same = eq
-            .domain
-            .iter()
-            .zip(&var.domain)
-            .all(|(a, b)| match (a, b) {
-                (DomainPosition::Set(a), DomainPosition::Set(b)) => {
-                    self.symbols.is_subset(*a, *b) || self.symbols.is_subset(*b, *a)
-                }
-                _ => true,
-            });
-        if !same {
-            return Diagnostic::error("E0366", at)
+        } else if !eq.domain.iter().zip(&var.domain).all(pairs) {
+            Diagnostic::error("E0366", at)
                 .says(format!(
-                    "`{}` and `{}` run over different sets, or the same in another order",
-                    eq.name, var.name
+                    "`{e}` and `{v}` run over different sets, or the same in another order"
                 ))
                 .label("domains differ")
-                .other(eq.declared, "the equation")
-                .other(var.declared, "the variable")
-                .fail(self);
-        }
-        Ok(())
+        } else {
+            return Ok(());
+        };
+        d.other(eq.declared, "the equation")
+            .other(var.declared, "the variable")
+            .fail(self)
     }
 }

@@ -500,6 +500,11 @@ impl Node {
         }
     }
 
+    /// Two nodes of data and an operator between them.
+    pub fn binary(op: BinaryOp, a: Node, b: Node, span: Span) -> Node {
+        Node::data(NodeKind::Binary(op, Box::new(a), Box::new(b)), span)
+    }
+
     /// A membership.
     pub fn membership(kind: NodeKind, span: Span) -> Node {
         Node {

@@ -40,30 +40,19 @@ impl Compiler {
                     Some((name, a)) => (name, Some(a)),
                     None => (&**t, None),
                 };
-                let s = self.lookup(&Ident {
+                let ident = |name: &str| Ident {
                     name: name.into(),
                     span: *span,
-                })?;
-                let offset = match attribute {
-                    None => None,
-                    Some(a) => match functions::stored_attribute(a) {
-                        Some(o) if self.symbols.get(s).has_attributes() => Some(o),
-                        _ => {
-                            let symbol = self.symbols.get(s);
-                            let (kind, name) = (symbol.kind_name(), symbol.name.clone());
-                            let a = Ident {
-                                name: a.into(),
-                                span: *span,
-                            };
-                            return self.unknown_attribute(
-                                &a,
-                                &name,
-                                kind,
-                                "l, m, lo, up, scale, prior",
-                            );
-                        }
-                    },
                 };
+                let s = self.lookup(&ident(name))?;
+                let symbol = self.symbols.get(s);
+                let offset = attribute.and_then(functions::stored_attribute);
+                let offset = offset.filter(|_| symbol.has_attributes());
+                if let (Some(a), None) = (attribute, offset) {
+                    let (kind, name) = (symbol.kind_name(), symbol.name.clone());
+                    let known = "l, m, lo, up, scale, prior";
+                    return self.unknown_attribute(&ident(a), &name, kind, known);
+                }
                 if self.symbols.get(s).is_set() {
                     self.changes_control(s, *span)?;
                 }
@@ -105,22 +94,24 @@ impl Compiler {
         match self.solvers.check(&name, &text) {
             Ok(Accepted::Taken) => Ok(Some(CodeKind::Option(name.into(), text.into()))),
             Ok(Accepted::Ignored) if !language::chooses_solver(&name) => {
-                let message = format!("the option `{name}` means nothing here");
-                if self.passed_over.insert(name) {
-                    let d = Diagnostic::warning("E0329", item.name.span).says(message);
-                    let help =
-                        "leave it out, or keep it for other systems: no result depends on it";
-                    d.label("passed over").help(help).report(self);
+                if self.passed_over.insert(name.clone()) {
+                    Diagnostic::warning("E0329", item.name.span)
+                        .says(format!("the option `{name}` means nothing here"))
+                        .label("passed over")
+                        .help("leave it out, or keep it for other systems: no result depends on it")
+                        .report(self);
                 }
                 Ok(None)
             }
             Ok(Accepted::Ignored) => {
-                let message = format!("the solver `{text}` is not in bmod, which takes its own");
                 let own = self.solvers.all_names();
-                let d = Diagnostic::warning("E0349", span)
-                    .says(message)
-                    .label("passed over");
-                d.help(format!("there are: {own}")).report(self);
+                Diagnostic::warning("E0349", span)
+                    .says(format!(
+                        "the solver `{text}` is not in bmod, which takes its own"
+                    ))
+                    .label("passed over")
+                    .help(format!("there are: {own}"))
+                    .report(self);
                 Ok(Some(CodeKind::Option(name.into(), "default".into())))
             }
             Err(refused) => self.refused_option(item, &name, &text, span, &refused),
@@ -147,23 +138,16 @@ impl Compiler {
             _ => code == "E0349",
         };
         let d = match lenient {
-            true => Diagnostic::warning(code, span)
-                .says(message)
-                .label("passed over"),
-            false => Diagnostic::error(code, span).says(message).label(label),
+            true => Diagnostic::warning(code, span).label("passed over"),
+            false => Diagnostic::error(code, span).label(label),
         };
-        let d = match help {
-            Some(help) => d.help(help),
-            None => d,
-        };
+        let d = Diagnostic { help, ..d }.says(message);
         if !lenient {
             return d.fail(self);
         }
         d.report(self);
-        Ok(match code {
-            "E0349" => Some(CodeKind::Option(name.into(), "default".into())),
-            _ => None,
-        })
+        let default = || CodeKind::Option(name.into(), "default".into());
+        Ok((code == "E0349").then(default))
     }
 
     /// An error for decimals, row indices or column indices that a display cannot have.
@@ -280,49 +264,36 @@ impl Compiler {
         self.used(s, source.span);
         let (target, from) = (self.symbols.get(t).clone(), self.symbols.get(s).clone());
         if !target.is_set() && !matches!(target.kind, SymbolKind::Parameter { .. }) {
+            let (name, kind) = (&item.name.name, target.a_kind());
             return Diagnostic::error("E0331", item.name.span)
                 .says(format!(
-                    "`{}` is {}: only sets and parameters are projected to",
-                    item.name.name,
-                    target.a_kind()
+                    "`{name}` is {kind}: only sets and parameters are projected to"
                 ))
                 .other(target.declared, "declared here")
                 .fail(self);
         }
-        let positions: Vec<usize> = match (&item.indices, source_indices) {
-            (Some(a), Some(b)) => {
-                let mut p = Vec::new();
-                for name in a {
-                    match b
-                        .iter()
-                        .position(|x| x.name.eq_ignore_ascii_case(&name.name))
-                    {
-                        Some(i) => p.push(i),
-                        None => {
-                            return Diagnostic::error("E0331", name.span)
-                                .says(format!("`{}` is not an index of the right side", name.name))
-                                .fail(self);
-                        }
-                    }
-                }
-                p
+        let mut positions = Vec::new();
+        if let (Some(a), Some(b)) = (&item.indices, source_indices) {
+            for Ident { name, span } in a {
+                let Some(i) = b.iter().position(|x| x.name.eq_ignore_ascii_case(name)) else {
+                    return Diagnostic::error("E0331", *span)
+                        .says(format!("`{name}` is not an index of the right side"))
+                        .fail(self);
+                };
+                positions.push(i);
             }
-            _ => {
-                // Each position of the target takes an unused position of the source with the same set,
-                // looked for from the right, or with `<=` from the left.
-                let mut free: Vec<usize> = (0..from.dim()).collect();
-                if !from_left {
-                    free.reverse();
-                }
-                let mut p = Vec::new();
-                for d in &target.domain {
-                    if let Some(i) = free.iter().position(|&i| from.domain[i] == *d) {
-                        p.push(free.remove(i));
-                    }
-                }
-                p
+        } else {
+            // Each position of the target takes an unused position of the source with the same set,
+            // looked for from the right, or with `<=` from the left.
+            let mut free: Vec<usize> = (0..from.dim()).collect();
+            if !from_left {
+                free.reverse();
             }
-        };
+            for d in &target.domain {
+                let found = free.iter().position(|&i| from.domain[i] == *d);
+                positions.extend(found.map(|i| free.remove(i)));
+            }
+        }
         if positions.len() != target.dim() {
             return Diagnostic::error("E0331", item.name.span)
                 .says("the right side does not have the index sets of the left")

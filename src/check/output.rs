@@ -31,31 +31,26 @@ impl Compiler {
                     let s = self.lookup(&r.name)?;
                     let symbol = self.symbols.get(s).clone();
                     if !r.indices.is_empty() {
+                        let (name, attribute) = (&r.name.name, r.attribute.as_ref());
+                        let attribute = attribute.map(|a| format!(".{}", a.name));
+                        let whole = format!("{name}{}", attribute.unwrap_or_default());
                         return Diagnostic::error("E0328", r.span)
                             .says("`display` takes whole symbols, without indices")
                             .label("indices here")
                             .help(format!(
-                                "write `display {}{}`; or copy the part you want into a parameter",
-                                r.name.name,
-                                r.attribute
-                                    .as_ref()
-                                    .map_or(String::new(), |a| format!(".{}", a.name))
+                                "write `display {whole}`; or copy the part you want into a parameter"
                             ))
                             .fail(self);
                     }
                     let attr = match (&symbol.kind, &r.attribute) {
                         (SymbolKind::Variable(_) | SymbolKind::Equation(_), Some(a)) => {
-                            match functions::display_attribute(&a.name) {
-                                Some(a) => Some(a),
-                                None => {
-                                    return self.unknown_attribute(
-                                        a,
-                                        &symbol.name,
-                                        symbol.kind_name(),
-                                        "l, m, lo, up, scale, prior",
-                                    );
-                                }
+                            let attribute = functions::display_attribute(&a.name);
+                            if attribute.is_none() {
+                                let (name, kind) = (&symbol.name, symbol.kind_name());
+                                let known = "l, m, lo, up, scale, prior";
+                                return self.unknown_attribute(a, name, kind, known);
                             }
+                            attribute
                         }
                         (SymbolKind::Variable(_) | SymbolKind::Equation(_), None) => {
                             bare.push((r.name.clone(), symbol.a_kind()));
@@ -65,10 +60,9 @@ impl Compiler {
                             Some(self.object_attribute(s, a)?)
                         }
                         (_, Some(a)) => {
-                            let message =
-                                format!("{} has no attribute `.{}`", symbol.a_kind(), a.name);
+                            let kind = symbol.a_kind();
                             return Diagnostic::error("E0314", a.span)
-                                .says(message)
+                                .says(format!("{kind} has no attribute `.{}`", a.name))
                                 .label("not an attribute")
                                 .help(format!("write `display {};`", symbol.name))
                                 .fail(self);
@@ -178,10 +172,8 @@ impl Compiler {
         let value = match &value.kind {
             ExprKind::Apply(name, attribute, None) if is_system(name) => {
                 let what = attribute.as_ref().map_or("", |a| &*a.name).to_lowercase();
-                Node::data(
-                    NodeKind::Text(format!("%system.{what}%").into()),
-                    value.span,
-                )
+                let text = format!("%system.{what}%").into();
+                Node::data(NodeKind::Text(text), value.span)
             }
             _ => match self.record_name(value)? {
                 Some(name) => name,

@@ -74,13 +74,7 @@ impl Compiler {
             StmtKind::Loop(d, body) => self.scoped(|c| {
                 let mut domain = c.domain(d)?;
                 let mut nest = std::mem::take(&mut c.nest);
-                nest.extend(
-                    domain
-                        .slots
-                        .iter()
-                        .copied()
-                        .zip(domain.sets.iter().copied()),
-                );
+                nest.extend(domain.slots.iter().copied().zip(domain.sets.clone()));
                 if holds_one_loop(body) {
                     c.nest.clone_from(&nest);
                 }
@@ -90,14 +84,9 @@ impl Compiler {
                 c.nest.clear();
                 // What the body changes is asked at every turn, not before the first.
                 let effects = Effects::of(&body, &c.symbols);
-                let mut late = Vec::new();
-                for cond in std::mem::take(&mut domain.conditions) {
-                    if effects.touch(&cond) {
-                        late.push(cond);
-                    } else {
-                        domain.conditions.push(cond);
-                    }
-                }
+                let conditions = std::mem::take(&mut domain.conditions).into_iter();
+                let (late, first) = conditions.partition(|cond| effects.touch(cond));
+                domain.conditions = first;
                 Ok(CodeKind::Loop(domain, late, body))
             })?,
             StmtKind::While(cond, body) => CodeKind::While(self.expr(cond)?, self.body(body, map)?),
@@ -161,13 +150,11 @@ impl Compiler {
             }
             StmtKind::Put(p) => self.put(p, span)?,
             StmtKind::Exchange(x) => {
+                let keyword = x.keyword.name.to_lowercase();
+                let loads = keyword.contains("load") && !keyword.contains("unload");
                 for item in &x.items {
                     let s = self.lookup(&item.name)?;
-                    if x.keyword.name.to_lowercase().contains("load")
-                        && !x.keyword.name.to_lowercase().contains("unload")
-                    {
-                        self.symbols.get_mut(s).assigned = true;
-                    }
+                    self.symbols.get_mut(s).assigned |= loads;
                 }
                 CodeKind::Exchange(x.clone())
             }
@@ -253,27 +240,23 @@ impl Compiler {
         self.shape(s, &e.indices);
         let symbol = self.symbols.get(s).clone();
         let SymbolKind::Equation(defined) = symbol.kind else {
+            let (name, kind) = (&symbol.name, symbol.a_kind());
             return Diagnostic::error("E0326", e.name.span)
-                .says(format!(
-                    "`{}` is {}, not an equation",
-                    symbol.name,
-                    symbol.a_kind()
-                ))
+                .says(format!("`{name}` is {kind}, not an equation"))
                 .label("an equation is expected before `..`")
                 .other(symbol.declared, "declared here")
                 .help(format!("declare it: `equation {};`", e.name.name))
                 .fail(self);
         };
-        if let Some(d) = defined {
-            let first = self.equations[d].span;
-            if !self.modes.at(e.name.span).multi_replace {
-                return Diagnostic::error("E0327", e.name.span)
-                    .says(format!("the equation `{}` is defined twice", symbol.name))
-                    .label("second definition")
-                    .other(first, "first definition")
-                    .help("give the second one another name")
-                    .fail(self);
-            }
+        if let Some(d) = defined
+            && !self.modes.at(e.name.span).multi_replace
+        {
+            return Diagnostic::error("E0327", e.name.span)
+                .says(format!("the equation `{}` is defined twice", symbol.name))
+                .label("second definition")
+                .other(self.equations[d].span, "first definition")
+                .help("give the second one another name")
+                .fail(self);
         }
         self.in_equation = true;
         let r = self.scoped(|c| {
@@ -317,27 +300,21 @@ impl Compiler {
         for o in bounded {
             self.store.table_mut(table + o).set_default(0.0);
         }
-        match r {
-            Ok(def) => {
-                self.equations.push(def);
-                Ok(())
+        let done = r.as_ref().map(|_| ()).map_err(|_| Failed);
+        self.equations.push(r.unwrap_or_else(|Failed| {
+            self.lost.definitions.insert(index);
+            EquationDef {
+                symbol: s,
+                domain: Domain::default(),
+                key: Key::default(),
+                left: Node::number(0.0, span),
+                relation: e.relation,
+                right: Node::number(0.0, span),
+                running: Vec::new(),
+                span,
             }
-            Err(Failed) => {
-                self.lost.definitions.insert(index);
-                let zero = || Node::number(0.0, span);
-                self.equations.push(EquationDef {
-                    symbol: s,
-                    domain: Domain::default(),
-                    key: Key::default(),
-                    left: zero(),
-                    relation: e.relation,
-                    right: zero(),
-                    running: Vec::new(),
-                    span,
-                });
-                Err(Failed)
-            }
-        }
+        }));
+        done
     }
 }
 

@@ -107,9 +107,10 @@ impl Compiler {
         let dim = symbol.dim();
         if dim < 2 {
             let of = &symbol.name;
-            let message = format!("a table has rows and columns; `{of}` has {dim} index");
             return Diagnostic::error("E0346", name)
-                .says(message)
+                .says(format!(
+                    "a table has rows and columns; `{of}` has {dim} index"
+                ))
                 .label("at least two index positions are needed")
                 .help("use a `parameter` with a list instead")
                 .fail(self);
@@ -224,14 +225,20 @@ impl Compiler {
                 }
                 _ => lines.key.extend(labels.iter().chain(column)),
             }
-            lines.values.push(match is_set {
-                true => f64::from(u8::from(truth(cell.value))),
-                false => self.stored(cell.value, cell.span),
-            });
+            let value = self.table_value(is_set, cell.value, cell.span);
+            lines.values.push(value);
         }
         // Neither its row nor its column comes twice, so none of them does.
         self.store.tables[table as usize].set_all(&lines.key, &lines.values);
         Ok(())
+    }
+
+    /// What a value of a table is stored as.
+    fn table_value(&self, is_set: bool, value: f64, span: Span) -> f64 {
+        match is_set {
+            true => f64::from(u8::from(truth(value))),
+            false => self.stored(value, span),
+        }
     }
 
     fn fill_cell(&mut self, s: SymbolId, lines: &mut Lines, cell: &Cell) -> Checked<()> {
@@ -259,10 +266,7 @@ impl Compiler {
         let Some(value) = value else { return Ok(()) };
         let symbol = self.symbols.get(s);
         let (dim, table, is_set) = (symbol.dim(), symbol.table, symbol.is_set());
-        let value = match is_set {
-            true => f64::from(u8::from(truth(value))),
-            false => self.stored(value, cell.span),
-        };
+        let value = self.table_value(is_set, value, cell.span);
         match (&lines.row, lines.columns.get(cell.place)) {
             (Line::Refused, _) | (_, Some(Line::Refused)) => return Ok(()),
             (Line::Labels(row), Some(Line::Labels(column))) if row.len() + column.len() == dim => {
@@ -276,16 +280,13 @@ impl Compiler {
             _ => {}
         }
         let parts = [cell.row, cell.column].concat();
-        let found = self.expand(s, &parts, cell.span, &mut lines.keys);
-        for k in lines
-            .keys
-            .rows()
-            .filter(|_| found.is_ok())
-            .map(|r| r.labels)
-        {
+        if self.expand(s, &parts, cell.span, &mut lines.keys).is_err() {
+            return Ok(());
+        }
+        for row in lines.keys.rows() {
             match is_set {
-                true => self.store.table_mut(table).set(k, value),
-                false => self.put_value(&mut lines.filling, k, value, cell.span),
+                true => self.store.table_mut(table).set(row.labels, value),
+                false => self.put_value(&mut lines.filling, row.labels, value, cell.span),
             }
         }
         Ok(())
@@ -365,19 +366,17 @@ impl Compiler {
 
     /// The labels of a row or column, refused if they came before.
     fn not_again(&mut self, line: Line, before: &mut Seen, at: Span, what: &str) -> Line {
-        let mut again = None;
         let (labels, width) = match &line {
             Line::Labels(l) => (l, l.len()),
             Line::Many(t) => (&t.labels, t.width),
             Line::Open | Line::Refused => return line,
         };
-        for key in labels.chunks_exact(width.max(1)) {
-            if before.again(key) {
-                again = Some(key.to_vec());
-            }
-        }
-        let Some(key) = again else { return line };
-        self.comes_again(&key, at, what);
+        // All of them have come now.
+        let keys = labels.chunks_exact(width.max(1));
+        let Some(key) = keys.filter(|key| before.again(key)).reduce(|_, last| last) else {
+            return line;
+        };
+        self.comes_again(key, at, what);
         Line::Refused
     }
 

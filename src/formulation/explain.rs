@@ -98,22 +98,16 @@ impl Explained<'_> {
 
     fn name(&self, blocks: &Blocks, i: usize) -> String {
         let b = blocks.of(i as u32);
-        record(
-            self.store,
-            &self.symbols.get(b.symbol).name,
-            b.key(i as u32),
-        )
+        let name = &self.symbols.get(b.symbol).name;
+        record(self.store, name, b.key(i as u32))
     }
 
     fn decided(&self) -> String {
         let p = self.primal;
         let z = p.objective.map(|o| o.1);
         let blocks = p.generated.origin.columns.list.iter();
-        let variables: Vec<String> = blocks
-            .map(|b| b.symbol)
-            .filter(|s| Some(*s) != z)
-            .map(|s| self.described(s))
-            .collect();
+        let variables = blocks.map(|b| b.symbol).filter(|s| Some(*s) != z);
+        let variables: Vec<String> = variables.map(|s| self.described(s)).collect();
         let aim = match p.objective {
             Some((sense, z)) => {
                 let name = self.described(z);
@@ -126,11 +120,8 @@ impl Explained<'_> {
             }
             None => ", so that all its conditions hold".into(),
         };
-        format!(
-            "The model {} decides on {}{aim}.",
-            p.name,
-            variables.join("; on ")
-        )
+        let variables = variables.join("; on ");
+        format!("The model {} decides on {variables}{aim}.", p.name)
     }
 
     /// How many columns are discrete choices.
@@ -147,11 +138,9 @@ impl Explained<'_> {
     fn size(&self) -> String {
         let p = self.primal;
         let i = &p.generated.instance;
-        let curved = if i.sign() < 0.0 { "concave" } else { "convex" };
-        let semi = if i.sign() < 0.0 {
-            "negative"
-        } else {
-            "positive"
+        let (curved, semi) = match i.sign() < 0.0 {
+            true => ("concave", "negative"),
+            false => ("convex", "positive"),
         };
         let row = |k| self.name(&p.generated.origin.rows, k);
         let global = "an optimum that is found is an optimum over all points";
@@ -184,10 +173,8 @@ impl Explained<'_> {
             true => format!(" It has {}.", discretely(discrete)),
             false => String::new(),
         };
-        let (rows, columns) = (
-            counted(i.row_count(), "row"),
-            counted(i.column_count(), "column"),
-        );
+        let rows = counted(i.row_count(), "row");
+        let columns = counted(i.column_count(), "column");
         format!("It has {rows} and {columns} ({}). {kind}.{also}", p.using)
     }
 
@@ -263,14 +250,10 @@ impl Explained<'_> {
             {
                 continue;
             }
+            let objective = &self.symbols.get(z).name;
             let (lead, number, words) = match discrete {
                 true => Default::default(),
-                false => worth(
-                    range,
-                    price,
-                    &self.symbols.get(z).name,
-                    g.instance.is_linear(),
-                ),
+                false => worth(range, price, objective, g.instance.is_linear()),
             };
             out.push(Said {
                 at: i,
@@ -320,14 +303,12 @@ impl Explained<'_> {
     fn reduced(&self) -> Vec<String> {
         let p = self.primal;
         let g = &p.generated;
-        let (Some(a), Some((sense, z)), true, 0) = (
-            &p.answer,
-            p.objective,
-            g.instance.is_linear(),
-            self.discrete(),
-        ) else {
+        let (Some(a), Some((sense, z))) = (&p.answer, p.objective) else {
             return Vec::new();
         };
+        if !g.instance.is_linear() || self.discrete() > 0 {
+            return Vec::new();
+        }
         let objective = &self.symbols.get(z).name;
         let c = &g.instance.columns;
         let (_, cost) = costs(&g.instance);
@@ -350,31 +331,26 @@ impl Explained<'_> {
                 others.push(self.name(&g.origin.columns, j));
                 continue;
             }
-            let how = if falls { "fall" } else { "rise" };
+            let [how, to] = [["rise", "above"], ["fall", "below"]][usize::from(falls)];
+            let (now, by) = (short(cost[j]), short(d));
             let (lead, number, words) = match limit {
                 Some(limit) if a.level[j] == 0.0 && limit.is_finite() => (
                     format!("what a coefficient would have to {how} by to leave them is"),
                     away.abs(),
                     format!(
-                        "its coefficient, {}, would have to {how} {} {}",
-                        short(cost[j]),
-                        if falls { "below" } else { "above" },
+                        "its coefficient, {now}, would have to {how} {to} {}",
                         short(limit)
                     ),
                 ),
                 _ if unique => (
                     format!("raising one a little changes {objective}, per unit, by"),
                     d,
-                    format!(
-                        "raising it a little changes {objective} by {} per unit",
-                        short(d)
-                    ),
+                    format!("raising it a little changes {objective} by {by} per unit"),
                 ),
-                _ => (
-                    "the reduced costs are".into(),
-                    d,
-                    format!("its reduced cost is {}", short(d)),
-                ),
+                _ => {
+                    let words = format!("its reduced cost is {by}");
+                    ("the reduced costs are".into(), d, words)
+                }
             };
             let verb = match lower {
                 true => ["is at its lower bound", "are at their lower bounds"],
@@ -406,8 +382,6 @@ impl Explained<'_> {
 }
 
 fn discretely(n: usize) -> String {
-    format!(
-        "{}, which are decided by a search",
-        counted(n, "discrete column")
-    )
+    let columns = counted(n, "discrete column");
+    format!("{columns}, which are decided by a search")
 }

@@ -286,13 +286,10 @@ fn as_text(page: &Page, width: usize) -> String {
             }
             Block::Pairs(head, rows) => {
                 let rows: Vec<[String; 2]> = rows.iter().map(|(a, b)| [text(a), text(b)]).collect();
-                let all = std::iter::once(head).chain(&rows);
-                let w = all
-                    .map(|r| r[0].chars().count())
-                    .max()
-                    .unwrap_or(0)
-                    .min(width / 2);
-                for r in std::iter::once(head).chain(&rows) {
+                let all = || std::iter::once(head).chain(&rows);
+                let longest = all().map(|r| r[0].chars().count()).max();
+                let w = longest.unwrap_or(0).min(width / 2);
+                for r in all() {
                     let _ = writeln!(out, "  {}  │ {}", pad(&r[0], w), r[1]);
                 }
             }
@@ -303,11 +300,8 @@ fn as_text(page: &Page, width: usize) -> String {
 }
 
 fn formulas_text(out: &mut String, list: &[Formula], width: usize) {
-    let w = list
-        .iter()
-        .map(|f| f.name.chars().count())
-        .max()
-        .unwrap_or(0);
+    let names = list.iter().map(|f| f.name.chars().count());
+    let w = names.max().unwrap_or(0);
     for f in list {
         let indent = if w == 0 { 2 } else { w + 4 };
         let body = wrapped(&f.math, width, indent);
@@ -507,24 +501,18 @@ pub fn body(page: &Page) -> String {
                         true => (format!("<div>{runs}</div>"), String::new()),
                         false => (String::new(), runs),
                     };
-                    let words = if f.name.is_empty() {
-                        plain(&f.words)
-                    } else {
-                        String::new()
-                    };
+                    let words = plain(if f.name.is_empty() { &f.words } else { "" });
+                    let (title, name) = (plain(&f.words).replace('"', "&quot;"), plain(&f.name));
+                    let formula = mathml_lines(&f.math);
                     let _ = writeln!(
                         out,
-                        "<tr title=\"{}\"><td class=\"name\">{}</td><td>{}{below}</td><td class=\"runs\">{beside}{words}</td></tr>",
-                        plain(&f.words).replace('"', "&quot;"),
-                        plain(&f.name),
-                        mathml_lines(&f.math),
+                        "<tr title=\"{title}\"><td class=\"name\">{name}</td><td>{formula}{below}</td><td class=\"runs\">{beside}{words}</td></tr>"
                     );
                     if let Some((name, m)) = &f.example {
+                        let (name, m) = (plain(name), mathml_lines(m));
                         let _ = writeln!(
                             out,
-                            "<tr class=\"example\"><td></td><td colspan=\"2\">{}: {}</td></tr>",
-                            plain(name),
-                            mathml_lines(m)
+                            "<tr class=\"example\"><td></td><td colspan=\"2\">{name}: {m}</td></tr>"
                         );
                     }
                 }
@@ -533,23 +521,14 @@ pub fn body(page: &Page) -> String {
             Block::Legend(rows) => {
                 out.push_str("<table>\n");
                 for (m, words, unit) in rows {
-                    let _ = writeln!(
-                        out,
-                        "<tr><td>{}</td><td>{}</td><td>{}</td></tr>",
-                        math(m),
-                        plain(words),
-                        plain(unit)
-                    );
+                    let (m, words, unit) = (math(m), plain(words), plain(unit));
+                    let _ = writeln!(out, "<tr><td>{m}</td><td>{words}</td><td>{unit}</td></tr>");
                 }
                 out.push_str("</table>\n");
             }
             Block::Pairs(head, rows) => {
-                let _ = writeln!(
-                    out,
-                    "<table>\n<tr><th>{}</th><th>{}</th></tr>",
-                    plain(&head[0]),
-                    plain(&head[1])
-                );
+                let [a, b] = head.each_ref().map(|t| plain(t));
+                let _ = writeln!(out, "<table>\n<tr><th>{a}</th><th>{b}</th></tr>");
                 for (a, b) in rows {
                     let _ = writeln!(out, "<tr><td>{}</td><td>{}</td></tr>", math(a), math(b));
                 }
@@ -563,27 +542,22 @@ pub fn body(page: &Page) -> String {
 
 fn table_html(out: &mut String, head: &[String], rows: &[Vec<String>]) {
     let number = |t: &str| t.starts_with(|c: char| c.is_ascii_digit() || "-−+∞".contains(c));
-    let numeric: Vec<bool> = (0..head.len())
-        .map(|c| {
-            rows.iter()
-                .all(|r| r.get(c).is_none_or(|t| t.is_empty() || number(t)))
-        })
-        .collect();
-    let cell = |tag: &str, n: usize, t: &str| {
-        let class = if numeric[n] { " class=\"n\"" } else { "" };
-        format!("<{tag}{class}>{}</{tag}>", plain(t))
+    let fits = |t: &String| t.is_empty() || number(t);
+    let numeric = (0..head.len()).map(|c| rows.iter().all(|r| r.get(c).is_none_or(fits)));
+    let numeric: Vec<bool> = numeric.collect();
+    let cells = |tag: &str, row: &[String]| {
+        let class = |n: usize| if numeric[n] { " class=\"n\"" } else { "" };
+        let each = row.iter().enumerate();
+        let each = each.map(|(n, t)| format!("<{tag}{}>{}</{tag}>", class(n), plain(t)));
+        format!("<tr>{}</tr>", each.collect::<String>())
     };
-    out.push_str("<table class=\"sortable\">\n<thead><tr>");
-    head.iter()
-        .enumerate()
-        .for_each(|(n, t)| out.push_str(&cell("th", n, t)));
-    out.push_str("</tr></thead>\n<tbody>\n");
+    let _ = writeln!(
+        out,
+        "<table class=\"sortable\">\n<thead>{}</thead>\n<tbody>",
+        cells("th", head)
+    );
     for r in rows {
-        out.push_str("<tr>");
-        r.iter()
-            .enumerate()
-            .for_each(|(n, t)| out.push_str(&cell("td", n, t)));
-        out.push_str("</tr>\n");
+        let _ = writeln!(out, "{}", cells("td", r));
     }
     out.push_str("</tbody></table>\n");
 }

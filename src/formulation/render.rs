@@ -15,16 +15,7 @@ pub fn text(m: &Math) -> String {
         Math::Operator(",") => ", ".into(),
         Math::Operator(o) => format!(" {o} "),
         Math::Prefix(o) => (*o).to_string(),
-        Math::Row(list) => {
-            let mut out = String::new();
-            for (n, m) in list.iter().enumerate() {
-                if n > 0 && are_factors(&list[n - 1], m) {
-                    out.push('·');
-                }
-                out.push_str(&text(m));
-            }
-            out
-        }
+        Math::Row(list) => in_row(list, text, |_| "·"),
         Math::Parentheses(m) => format!("({})", text(m)),
         Math::Bracket(m) => format!("[{}]", text(m)),
         Math::Open(t) | Math::Close(t) => (*t).to_string(),
@@ -56,6 +47,18 @@ pub fn text(m: &Math) -> String {
     }
 }
 
+/// Pieces side by side, with something between two that are multiplied.
+fn in_row(list: &[Math], write: fn(&Math) -> String, times: fn(&Math) -> &'static str) -> String {
+    let mut out = String::new();
+    for (n, m) in list.iter().enumerate() {
+        if n > 0 && are_factors(&list[n - 1], m) {
+            out.push_str(times(m));
+        }
+        out.push_str(&write(m));
+    }
+    out
+}
+
 /// Whether two neighbours are multiplied.
 fn are_factors(a: &Math, b: &Math) -> bool {
     let is_factor = |m: &Math| !matches!(m, Math::Operator(_) | Math::Prefix(_) | Math::Words(_));
@@ -81,22 +84,8 @@ fn tight(m: &Math) -> String {
 }
 
 fn superscript(t: &str) -> Option<String> {
-    let one = |c: char| {
-        Some(match c {
-            '0' => '⁰',
-            '1' => '¹',
-            '2' => '²',
-            '3' => '³',
-            '4' => '⁴',
-            '5' => '⁵',
-            '6' => '⁶',
-            '7' => '⁷',
-            '8' => '⁸',
-            '9' => '⁹',
-            '−' => '⁻',
-            _ => return None,
-        })
-    };
+    let raised = "0123456789−".chars().zip("⁰¹²³⁴⁵⁶⁷⁸⁹⁻".chars());
+    let one = |c| raised.clone().find(|r| r.0 == c).map(|r| r.1);
     t.chars().map(one).collect()
 }
 
@@ -241,12 +230,9 @@ pub const LINE: usize = 84;
 pub fn latex_lines(m: &Math, room: usize, behind: Option<&Math>) -> String {
     let mut out = String::new();
     let mut column = 0;
-    let line = |inside| {
-        if inside {
-            " \\\\\n & \\qquad\\quad {}"
-        } else {
-            " \\\\\n & \\qquad {}"
-        }
+    let line = |inside| match inside {
+        true => " \\\\\n & \\qquad\\quad {}",
+        false => " \\\\\n & \\qquad {}",
     };
     for (inside, p) in fitting(m, room) {
         let length = text(&p).chars().count();
@@ -287,35 +273,23 @@ pub fn latex(m: &Math) -> String {
         Math::Words(t) | Math::Quoted(t) => format!("\\text{{{}}}", latex_words(t)),
         Math::Name(n) => latex_name(n),
         Math::Operator(o) | Math::Prefix(o) => format!(" {} ", latex_operator(o)),
-        Math::Row(list) => {
-            let mut out = String::new();
-            for (n, m) in list.iter().enumerate() {
-                if n > 0 && are_factors(&list[n - 1], m) {
-                    let numbers = matches!(m, Math::Number(_) | Math::Fraction(..));
-                    out.push_str(if numbers { " \\cdot " } else { "\\," });
-                }
-                out.push_str(&latex(m));
-            }
-            out
-        }
+        Math::Row(list) => in_row(list, latex, |m| match m {
+            Math::Number(_) | Math::Fraction(..) => " \\cdot ",
+            _ => "\\,",
+        }),
         Math::Parentheses(m) => format!("\\left({}\\right)", latex(m)),
         Math::Bracket(m) => format!("\\left[{}\\right]", latex(m)),
         Math::Open(t) => format!("\\bigl{t}"),
         Math::Close(t) => format!("\\bigr{t}"),
         Math::Indexed(base, parts) => {
-            let single = parts
-                .iter()
-                .all(|p| matches!(p, Math::Name(n) if is_letter(n)));
+            let single = parts.iter().all(is_letter);
             let parts: Vec<String> = parts.iter().map(latex).collect();
             let parts = parts.join(if single { " " } else { "," });
             match &**base {
                 // A symbol with a subscript of its own takes the indices behind it.
                 Math::Name(n) if !n.below.is_empty() && n.latex.is_none() => {
-                    format!(
-                        "{}_{{\\mathrm{{{}}},{parts}}}",
-                        letters(&n.base),
-                        escaped(&n.below)
-                    )
+                    let (base, below) = (letters(&n.base), escaped(&n.below));
+                    format!("{base}_{{\\mathrm{{{below}}},{parts}}}")
                 }
                 base => format!("{{{}}}_{{{parts}}}", latex(base)),
             }
@@ -353,8 +327,8 @@ pub fn latex(m: &Math) -> String {
     }
 }
 
-fn is_letter(n: &Name) -> bool {
-    n.base.chars().count() == 1 && n.below.is_empty()
+fn is_letter(m: &Math) -> bool {
+    matches!(m, Math::Name(n) if n.base.chars().count() == 1 && n.below.is_empty())
 }
 
 /// Letters in LaTeX: one alone in italics, a Greek one by its command, a word upright.
@@ -381,10 +355,7 @@ fn escaped(t: &str) -> String {
     let mut out = String::new();
     for c in t.chars() {
         match c {
-            '#' | '$' | '%' | '&' | '_' | '{' | '}' => {
-                out.push('\\');
-                out.push(c);
-            }
+            '#' | '$' | '%' | '&' | '_' | '{' | '}' => out.extend(['\\', c]),
             '\\' => out.push_str("\\textbackslash{}"),
             '~' => out.push_str("\\textasciitilde{}"),
             '^' => out.push_str("\\textasciicircum{}"),
@@ -469,32 +440,17 @@ pub fn mathml(m: &Math) -> String {
             ),
         },
         Math::Operator(o) | Math::Prefix(o) => format!("<mo>{}</mo>", plain(o)),
-        Math::Row(list) => {
-            let mut out = String::new();
-            for (n, m) in list.iter().enumerate() {
-                if n > 0 && are_factors(&list[n - 1], m) {
-                    let numbers = matches!(m, Math::Number(_));
-                    out.push_str(if numbers {
-                        "<mo>·</mo>"
-                    } else {
-                        "<mspace width=\"0.17em\"/>"
-                    });
-                }
-                out.push_str(&mathml(m));
-            }
-            out
-        }
+        Math::Row(list) => in_row(list, mathml, |m| match m {
+            Math::Number(_) => "<mo>·</mo>",
+            _ => "<mspace width=\"0.17em\"/>",
+        }),
         Math::Parentheses(m) => format!("<mrow><mo>(</mo>{}<mo>)</mo></mrow>", mathml(m)),
         Math::Bracket(m) => format!("<mrow><mo>[</mo>{}<mo>]</mo></mrow>", mathml(m)),
         Math::Open(t) | Math::Close(t) => format!("<mo stretchy=\"false\">{t}</mo>"),
         Math::Indexed(base, parts) => {
-            let single = parts
-                .iter()
-                .all(|p| matches!(p, Math::Name(n) if is_letter(n)));
-            let comma = if single {
-                "<mspace width=\"0.1em\"/>"
-            } else {
-                "<mo separator=\"true\">,</mo>"
+            let comma = match parts.iter().all(is_letter) {
+                true => "<mspace width=\"0.1em\"/>",
+                false => "<mo separator=\"true\">,</mo>",
             };
             let parts: Vec<String> = parts.iter().map(row).collect();
             let parts = parts.join(comma);

@@ -66,10 +66,9 @@ impl Machine<'_> {
         let set = self.store.table(lag.set);
         let at = i64::from(set.find(&[from])?);
         let n = set.len() as i64;
-        let to = if lag.circular {
-            (at + offset).rem_euclid(n.max(1))
-        } else {
-            at + offset
+        let to = match lag.circular {
+            true => (at + offset).rem_euclid(n.max(1)),
+            false => at + offset,
         };
         (0..n).contains(&to).then(|| set.key(to as u32)[0])
     }
@@ -96,10 +95,9 @@ impl Machine<'_> {
             [Part::Slot(a), Part::Slot(b)] => t.get(&[frame[*a as usize], frame[*b as usize]]),
             parts => {
                 let mut k = [0; 20];
-                if self.key(key, frame, &mut k) {
-                    t.get(&k[..parts.len()])
-                } else {
-                    t.default_value()
+                match self.key(key, frame, &mut k) {
+                    true => t.get(&k[..parts.len()]),
+                    false => t.default_value(),
                 }
             }
         }
@@ -118,27 +116,24 @@ impl Machine<'_> {
     }
 
     fn arithmetic(&self, r: Result<f64, ArithmeticError>, span: Span) -> f64 {
-        match r {
-            Ok(x) => x,
-            Err(ArithmeticError::DivisionByZero) => self.execution_error(
+        let (code, message, help) = match r {
+            Ok(x) => return x,
+            Err(ArithmeticError::DivisionByZero) => (
                 "E0401",
-                span,
-                "division by zero".into(),
+                "division by zero",
                 "guard it with a condition, `a / b $ b` or `(a/b)$b`",
             ),
-            Err(ArithmeticError::Indefinite) => self.execution_error(
+            Err(ArithmeticError::Indefinite) => (
                 "E0402",
-                span,
-                "infinity times zero has no value".into(),
+                "infinity times zero has no value",
                 "replace the infinite number, or guard the product with a condition",
             ),
-            Err(ArithmeticError::Overflow) => self.execution_error(
-                "E0404",
-                span,
-                "the result is too large for a number".into(),
-                "rescale the data",
-            ),
-        }
+            Err(ArithmeticError::Overflow) => {
+                let message = "the result is too large for a number";
+                ("E0404", message, "rescale the data")
+            }
+        };
+        self.execution_error(code, span, message.into(), help)
     }
 
     /// A value to compute with: an acronym is none.
@@ -163,11 +158,9 @@ impl Machine<'_> {
         message: String,
         help: &str,
     ) -> f64 {
-        let at = self.current_record();
-        let message = if at.is_empty() {
-            message
-        } else {
-            format!("{message} ({at})")
+        let message = match self.current_record() {
+            at if at.is_empty() => message,
+            at => format!("{message} ({at})"),
         };
         Diagnostic::execution(code, span)
             .says(message)

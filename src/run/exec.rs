@@ -250,11 +250,7 @@ impl Machine<'_> {
         match target {
             Target::Table(t) | Target::Set(t) | Target::Singleton(t) => Some(t),
             Target::Fix(s) => Some(self.symbols.get(s).table + attribute::L),
-            Target::Object(..)
-            | Target::Seed
-            | Target::Errors
-            | Target::MostErrors
-            | Target::Ignored => None,
+            _ => None,
         }
     }
 
@@ -282,11 +278,10 @@ impl Machine<'_> {
             if skips(a, v) {
                 return;
             }
+            let count = number(v).clamp(0.0, 1e9) as usize;
             match target {
-                Target::Errors => self
-                    .failed_statements
-                    .set(number(v).clamp(0.0, 1e9) as usize),
-                Target::MostErrors => self.most_errors = number(v).clamp(0.0, 1e9) as usize,
+                Target::Errors => self.failed_statements.set(count),
+                Target::MostErrors => self.most_errors = count,
                 Target::Seed => *self.random.borrow_mut() = Random::new(number(v) as i64),
                 Target::Object(s, a) => self.set_object_attribute(s, a, v, text),
                 _ => {}
@@ -340,15 +335,12 @@ impl Machine<'_> {
             false => 1,
         };
         let own = owner.table..owner.table + count;
-        let mut first: Option<Label> = None;
-        for t in own.clone() {
+        let least = own.clone().filter_map(|t| {
             let table = &mut self.store.tables[t as usize];
             table.tidy();
-            if !table.is_empty() {
-                let least = table.key(0)[0];
-                first = Some(first.map_or(least, |f| f.min(least)));
-            }
-        }
+            (!table.is_empty()).then(|| table.key(0)[0])
+        });
+        let first: Option<Label> = least.min();
         let outer = Domain {
             conditions: Vec::new(),
             ..domain.clone()
@@ -405,19 +397,17 @@ impl Machine<'_> {
 
     fn assign_one(&mut self, s: SymbolId, a: &Assignment, frame: &mut Frame) {
         let (domain, target) = (&a.domain, a.target);
-        if !self.all_hold(&domain.conditions, frame)
-            || !domain
-                .members
-                .iter()
-                .all(|m| self.is_member(m.table, &m.key, frame))
-        {
-            self.empty_singleton(target);
-            return;
-        }
         let mut k = [0; 20];
         let n = a.key.parts.len();
-        if !self.key(&a.key, frame, &mut k) {
-            self.empty_singleton(target);
+        let mut members = domain.members.iter();
+        let assigns = self.all_hold(&domain.conditions, frame)
+            && members.all(|m| self.is_member(m.table, &m.key, frame))
+            && self.key(&a.key, frame, &mut k);
+        if !assigns {
+            // A singleton set loses its element even where no element is assigned.
+            if let Target::Singleton(t) = target {
+                self.store.table_mut(t).clear();
+            }
             return;
         }
         if n > 0 {
@@ -431,21 +421,10 @@ impl Machine<'_> {
         }
         match target {
             Target::Table(t) => self.store.table_mut(t).set(&k[..n], v),
-            _ => self.write(
-                target,
-                Records {
-                    keys: k[..n].to_vec(),
-                    values: vec![v],
-                },
-                false,
-            ),
-        }
-    }
-
-    /// An assignment to a singleton set takes its element out even where no element is assigned.
-    fn empty_singleton(&mut self, target: Target) {
-        if let Target::Singleton(t) = target {
-            self.store.table_mut(t).clear();
+            _ => {
+                let (keys, values) = (k[..n].to_vec(), vec![v]);
+                self.write(target, Records { keys, values }, false);
+            }
         }
     }
 
@@ -492,22 +471,15 @@ impl Machine<'_> {
             Target::Table(t) => {
                 let table = self.store.table_mut(t);
                 if covers {
-                    *table = Table::from_sorted(
-                        table.dim(),
-                        table.default_value(),
-                        out.keys,
-                        out.values,
-                    );
+                    let (dim, default) = (table.dim(), table.default_value());
+                    *table = Table::from_sorted(dim, default, out.keys, out.values);
                 } else {
                     table.merge(&out.keys, &out.values);
                 }
             }
             Target::Set(t) => {
-                let values: Vec<f64> = out
-                    .values
-                    .iter()
-                    .map(|&v| f64::from(u8::from(truth(v))))
-                    .collect();
+                let members = out.values.iter().map(|&v| f64::from(u8::from(truth(v))));
+                let values: Vec<f64> = members.collect();
                 self.store.table_mut(t).merge(&out.keys, &values);
             }
             Target::Singleton(t) => {
@@ -536,30 +508,20 @@ impl Machine<'_> {
                     self.store.table_mut(t + o).merge(&out.keys, &out.values);
                 }
             }
-            Target::Object(..)
-            | Target::Seed
-            | Target::Errors
-            | Target::MostErrors
-            | Target::Ignored => {}
+            _ => {}
         }
     }
 
     fn abort(&mut self, items: &[Shown], no_error: bool, span: Span) -> Flow {
-        let text = items.iter().find_map(|i| {
-            if let Shown::Text(t) = i {
-                Some(t.to_string())
-            } else {
-                None
-            }
+        let text = items.iter().find_map(|i| match i {
+            Shown::Text(t) => Some(format!(": {t}")),
+            _ => None,
         });
         self.display(items, span);
         if !no_error {
-            let message = text.map_or_else(
-                || "the model stopped itself".to_string(),
-                |t| format!("the model stopped itself: {t}"),
-            );
+            let text = text.unwrap_or_default();
             Diagnostic::execution("E0480", span)
-                .says(message)
+                .says(format!("the model stopped itself{text}"))
                 .label("`abort`")
                 .note(self);
         }
@@ -641,16 +603,9 @@ impl Machine<'_> {
         }
         table.tidy();
         if more {
-            self.execution_error(
-                "E0409",
-                span,
-                format!(
-                    "{} elements have more than {} orders",
-                    set.len(),
-                    numbers.len()
-                ),
-                "the rest is left out",
-            );
+            let (elements, orders) = (set.len(), numbers.len());
+            let message = format!("{elements} elements have more than {orders} orders");
+            self.execution_error("E0409", span, message, "the rest is left out");
         }
     }
 
@@ -660,22 +615,16 @@ impl Machine<'_> {
         let (tt, st, to_set, from_set) = (t.table, s.table, t.is_set(), s.is_set());
         self.store.table_mut(st).tidy();
         let d = positions.len();
-        let mut rows: Vec<(Vec<Label>, f64)> = self
-            .store
-            .table(st)
-            .iter()
-            .map(|(k, v)| (positions.iter().map(|&p| k[p]).collect(), v))
-            .collect();
+        let records = self.store.table(st).iter();
+        let rows = records.map(|(k, v)| (positions.iter().map(|&p| k[p]).collect(), v));
+        let mut rows: Vec<(Vec<Label>, f64)> = rows.collect();
         rows.sort_by(|a, b| a.0.cmp(&b.0));
         let same_dim = d == self.store.table(st).dim();
         let (mut keys, mut values): (Vec<Label>, Vec<f64>) = (Vec::new(), Vec::new());
         for (i, (k, v)) in rows.iter().enumerate() {
             let repeated = i > 0 && rows[i - 1].0 == *k;
-            let v = if to_set || from_set || !same_dim {
-                1.0
-            } else {
-                *v
-            };
+            let counts = to_set || from_set || !same_dim;
+            let v = if counts { 1.0 } else { *v };
             match (repeated, values.last_mut()) {
                 (true, Some(last)) => *last = if to_set { v } else { *last + 1.0 },
                 _ => {

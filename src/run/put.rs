@@ -183,13 +183,8 @@ impl Machine<'_> {
 
     /// Writes what is still open, in the order of declaration.
     pub(super) fn close_put_files(&mut self) {
-        let mut open: Vec<(SymbolId, Span)> = self
-            .put
-            .files
-            .iter()
-            .filter(|(_, f)| f.open)
-            .map(|(&s, f)| (s, f.span))
-            .collect();
+        let open = self.put.files.iter().filter(|(_, f)| f.open);
+        let mut open: Vec<(SymbolId, Span)> = open.map(|(&s, f)| (s, f.span)).collect();
         open.sort_unstable_by_key(|(s, _)| *s);
         for (s, span) in open {
             self.close_put_file(s, span);
@@ -222,30 +217,25 @@ impl Machine<'_> {
                     None if fill == 0.0 => Item::Text(String::new()),
                     _ => {
                         let names = k.iter().map(|&l| self.store.universe.name(l));
+                        let names: Vec<&str> = names.collect();
                         Item::Text(match fill >= 4.0 {
-                            true => names
-                                .map(|n| format!("\"{n}\""))
-                                .collect::<Vec<_>>()
-                                .join(","),
-                            false => names.collect::<Vec<_>>().join("."),
+                            true => format!("\"{}\"", names.join("\",\"")),
+                            false => names.join("."),
                         })
                     }
                 }
             }
             NodeKind::SymbolText(s) => Item::Text(self.symbols.get(*s).text.to_string()),
             NodeKind::RecordName(s, key) => {
-                let labels: Vec<String> = key
-                    .parts
-                    .iter()
-                    .map(|p| {
-                        // A lag beyond the end: `x("")`.
-                        let name = self.part(p, frame).map(|l| self.store.universe.name(l));
-                        let name = name.unwrap_or_default();
-                        let plain = !name.is_empty() && !name.contains('\'');
-                        let quote = if plain { '\'' } else { '"' };
-                        format!("{quote}{name}{quote}")
-                    })
-                    .collect();
+                let labels = key.parts.iter().map(|p| {
+                    // A lag beyond the end: `x("")`.
+                    let name = self.part(p, frame).map(|l| self.store.universe.name(l));
+                    let name = name.unwrap_or_default();
+                    let plain = !name.is_empty() && !name.contains('\'');
+                    let quote = if plain { '\'' } else { '"' };
+                    format!("{quote}{name}{quote}")
+                });
+                let labels: Vec<String> = labels.collect();
                 let symbol = &self.symbols.get(*s).name;
                 Item::Text(match labels.as_slice() {
                     [] => symbol.to_string(),
@@ -286,11 +276,8 @@ impl Machine<'_> {
     fn system_value(&self, what: &str) -> Item {
         let now = self.now();
         let part = |f| calendar::part(f, now).unwrap_or(0.0);
-        let (year, month, day) = (
-            part(DataFunction::GYear),
-            part(DataFunction::GMonth),
-            part(DataFunction::GDay),
-        );
+        use DataFunction::{GDay, GHour, GMinute, GMonth, GSecond, GYear};
+        let [year, month, day] = [GYear, GMonth, GDay].map(part);
         let source = || self.map.files().first().map_or("", |f| f.name.as_str());
         let path = std::path::Path::new(source());
         let name = |p: Option<&std::ffi::OsStr>| {
@@ -298,17 +285,12 @@ impl Machine<'_> {
         };
         Item::Text(match what {
             "date" => format!("{month:02}/{day:02}/{:02}", year % 100.0),
-            "date1" => format!(
-                "{} {day:02}, {year}",
-                MONTHS[(month.max(1.0) as usize - 1).min(11)]
-            ),
+            "date1" => {
+                let month = MONTHS[(month.max(1.0) as usize - 1).min(11)];
+                format!("{month} {day:02}, {year}")
+            }
             "time" => {
-                let [h, m, s] = [
-                    DataFunction::GHour,
-                    DataFunction::GMinute,
-                    DataFunction::GSecond,
-                ]
-                .map(part);
+                let [h, m, s] = [GHour, GMinute, GSecond].map(part);
                 format!("{h:02}:{m:02}:{s:02}")
             }
             "title" => self.map.title.clone().unwrap_or_else(|| "bmod".into()),

@@ -52,11 +52,8 @@ impl Preprocessor<'_> {
     }
 
     pub(super) fn goto(&mut self, rest: &str, lo: u32, hi: u32) -> Outcome<()> {
-        let label = rest
-            .split_whitespace()
-            .next()
-            .unwrap_or("")
-            .to_ascii_lowercase();
+        let label = rest.split_whitespace().next().unwrap_or("");
+        let label = label.to_ascii_lowercase();
         let marks = self.marks.clone();
         let limit = self.max_jumps;
         let listed = self.listed();
@@ -155,10 +152,9 @@ impl Preprocessor<'_> {
         for (t, at) in lines {
             let len = t.len() as u32;
             let line = Line::new(file, at, &t);
-            let t = if word == "onputs" {
-                self.substituted(line)?.text
-            } else {
-                t
+            let t = match word {
+                "onputs" => self.substituted(line)?.text,
+                _ => t,
             };
             let mut put = String::from("put ");
             let mut rest = t.as_str();

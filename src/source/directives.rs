@@ -80,11 +80,10 @@ fn conversion(command: &str) -> Option<String> {
         }
     }
     made.or_else(|| {
-        let file = source?.rsplit(['/', '\\']).next()?.to_owned();
-        Some(format!(
-            "{}.gdx",
-            file.rsplit_once('.').map_or(file.as_str(), |f| f.0)
-        ))
+        let source = source?;
+        let file = source.rsplit(['/', '\\']).next()?;
+        let stem = file.rsplit_once('.').map_or(file, |f| f.0);
+        Some(format!("{stem}.gdx"))
     })
 }
 
@@ -156,40 +155,33 @@ impl Preprocessor<'_> {
             let word = text[at..at + len].to_ascii_lowercase();
             at += len;
             if word.is_empty() {
+                let help =
+                    "a `$` condition must not begin in the first column: put a blank before it";
                 let (lo, hi) = line.origin(0, text.len().max(1));
                 let span = self.place(lo, hi);
                 return Diagnostic::error("E0107", span)
                     .says("a `$` in the first column begins a directive, but no name follows")
-                    .help(
-                        "a `$` condition must not begin in the first column: put a blank before it",
-                    )
+                    .help(help)
                     .refuse();
             }
-            if self.switch(&word) || SILENT.contains(&word.as_str()) {
-                if SILENT.contains(&word.as_str()) {
-                    // A number or a mark may stand behind.
-                    let rest = behind_separators(&text[at..]);
-                    at = text.len() - rest.len();
-                    if !rest.starts_with(|c: char| {
-                        c.is_ascii_alphabetic() || c == self.marks.dollar as char
-                    }) {
-                        let (_, after) = argument(&text[at..]);
-                        at = text.len() - after.len();
-                    } else if !self.is_directive(rest) {
-                        return Ok(());
-                    }
-                }
-                let rest = behind_separators(&text[at..]);
-                if rest.is_empty() {
+            let silent = SILENT.contains(&word.as_str());
+            if !self.switch(&word) && !silent {
+                return self.directive(line, &word, from, at, known);
+            }
+            let dollar = self.marks.dollar as char;
+            let mut rest = behind_separators(&text[at..]);
+            if silent {
+                // A number or a mark may stand behind.
+                if !rest.starts_with(|c: char| c.is_ascii_alphabetic() || c == dollar) {
+                    rest = behind_separators(argument(rest).1);
+                } else if !self.is_directive(rest) {
                     return Ok(());
                 }
-                at = text.len() - rest.len();
-                if rest.as_bytes()[0] == self.marks.dollar {
-                    at += 1;
-                }
-                continue;
             }
-            return self.directive(line, &word, from, at, known);
+            if rest.is_empty() {
+                return Ok(());
+            }
+            at = text.len() - rest.len() + usize::from(rest.starts_with(dollar));
         }
     }
 
@@ -217,12 +209,10 @@ impl Preprocessor<'_> {
 
     /// Directives without argument that set something. True if it was one.
     fn switch(&mut self, word: &str) -> bool {
-        let (on, what) = if let Some(w) = word.strip_prefix("on") {
-            (true, w)
-        } else if let Some(w) = word.strip_prefix("off") {
-            (false, w)
-        } else {
-            return false;
+        let (on, what) = match (word.strip_prefix("on"), word.strip_prefix("off")) {
+            (Some(w), _) => (true, w),
+            (_, Some(w)) => (false, w),
+            _ => return false,
         };
         let mut modes = self.modes.last().map_or(Modes::default(), |m| m.1);
         let m = &mut modes;
@@ -342,19 +332,13 @@ impl Preprocessor<'_> {
             "prefixpath" => {}
             "phantom" => self.map.phantom = Some(argument(rest).0.into()),
             "setargs" => {
-                let values = self
-                    .frames
-                    .last()
-                    .and_then(|f| f.arguments.clone())
-                    .unwrap_or_default();
+                let frame = self.frames.last();
+                let values = frame.and_then(|f| f.arguments.clone()).unwrap_or_default();
                 // The last name takes all that is left.
                 let names: Vec<&str> = rest.split_whitespace().collect();
                 for (i, name) in names.iter().enumerate() {
-                    let end = if i + 1 < names.len() {
-                        i + 1
-                    } else {
-                        values.len()
-                    };
+                    let is_last = i + 1 == names.len();
+                    let end = if is_last { values.len() } else { i + 1 };
                     let value = values.get(i..end).unwrap_or_default().join(" ");
                     self.names.set(Reach::Local, name, value);
                 }
@@ -369,17 +353,17 @@ impl Preprocessor<'_> {
             "setnames" => {
                 let (file, tail) = argument(rest);
                 let path = std::path::Path::new(file);
-                let dir = path
-                    .parent()
-                    .map_or(String::new(), |p| p.display().to_string());
-                let dir = if dir.is_empty() { dir } else { dir + "/" };
-                let stem = path
-                    .file_stem()
-                    .map_or(String::new(), |s| s.to_string_lossy().into_owned());
-                let ext = path
-                    .extension()
-                    .map_or(String::new(), |s| format!(".{}", s.to_string_lossy()));
-                for (name, value) in tail.split_whitespace().zip([dir, stem, ext]) {
+                let words = |part: Option<&std::ffi::OsStr>| {
+                    part.map_or(String::new(), |p| p.to_string_lossy().into_owned())
+                };
+                let mut dir = words(path.parent().map(|p| p.as_os_str()));
+                if !dir.is_empty() {
+                    dir.push('/');
+                }
+                let stem = words(path.file_stem());
+                let ext = path.extension().map(|e| format!(".{}", words(Some(e))));
+                let parts = [dir, stem, ext.unwrap_or_default()];
+                for (name, value) in tail.split_whitespace().zip(parts) {
                     self.names.set(Reach::Scoped, name, value);
                 }
             }
@@ -461,10 +445,9 @@ impl Preprocessor<'_> {
             }
             "abort" | "error" => {
                 let span = self.place(lo, hi);
-                let message = if rest.trim().is_empty() {
-                    "stopped here"
-                } else {
-                    unquoted(rest)
+                let message = match rest.trim() {
+                    "" => "stopped here",
+                    _ => unquoted(rest),
                 };
                 let d = Diagnostic::error("E0110", span)
                     .says(message)
@@ -486,13 +469,11 @@ impl Preprocessor<'_> {
             }
             "maxcol" | "mincol" => {
                 let (number, behind) = argument(rest);
-                if let Ok(n) = number.parse::<usize>() {
-                    if word == "maxcol" {
-                        self.marks.columns.1 = n.max(1);
-                    } else {
-                        self.marks.columns.0 = n.max(1);
-                    }
-                }
+                let column = match word {
+                    "maxcol" => &mut self.marks.columns.1,
+                    _ => &mut self.marks.columns.0,
+                };
+                *column = number.parse().map_or(*column, |n: usize| n.max(1));
                 return self.further_directive(line, behind, known);
             }
             "maxgoto" => {
@@ -569,15 +550,10 @@ impl Preprocessor<'_> {
                         .help("put a blank before the condition")
                         .refuse();
                 }
-                let mut all: Vec<String> = OTHERS
-                    .iter()
-                    .chain(SILENT)
-                    .map(|s| (*s).to_owned())
-                    .collect();
-                for s in SILENT_SWITCHES {
-                    all.push(format!("on{s}"));
-                    all.push(format!("off{s}"));
-                }
+                let names = OTHERS.iter().chain(SILENT).map(|s| (*s).to_owned());
+                let switches = SILENT_SWITCHES.iter();
+                let switches = switches.flat_map(|s| [format!("on{s}"), format!("off{s}")]);
+                let all: Vec<String> = names.chain(switches).collect();
                 let near = nearest(word, all.iter().map(String::as_str));
                 let help = near.map_or(
                     "take the line out; docs/language.md lists the directives".into(),

@@ -381,10 +381,8 @@ impl<'h> Preprocessor<'h> {
                 .refuse();
         }
         // The name as it is, then with GAMS's ending.
-        let longer = Path::new(name)
-            .extension()
-            .is_none()
-            .then(|| format!("{name}.gms"));
+        let bare = Path::new(name).extension().is_none();
+        let longer = bare.then(|| format!("{name}.gms"));
         let names = || [Some(name), longer.as_deref()].into_iter().flatten();
         if let Some(text) = names().find_map(|n| self.map.written_text(n)) {
             let text = text.to_owned();
@@ -404,16 +402,12 @@ impl<'h> Preprocessor<'h> {
             Err(e) => return unreadable(name, &e, asked).refuse(),
         };
         // A batch file may call itself with other arguments: that is bounded by the depth.
-        let itself = arguments.is_none()
-            && self
-                .frames
-                .iter()
-                .any(|f| f.path == path && f.arguments.is_none());
+        let is_open = |f: &Frame| f.path == path && f.arguments.is_none();
+        let itself = arguments.is_none() && self.frames.iter().any(is_open);
         if itself || self.frames.len() >= DEEPEST_INCLUDE {
-            let message = if itself {
-                format!("the file `{name}` includes itself")
-            } else {
-                format!("files are included more than {DEEPEST_INCLUDE} deep")
+            let message = match itself {
+                true => format!("the file `{name}` includes itself"),
+                false => format!("files are included more than {DEEPEST_INCLUDE} deep"),
             };
             let mut d = Diagnostic::error("E0105", asked)
                 .says(message)
@@ -432,15 +426,11 @@ impl<'h> Preprocessor<'h> {
         if let Some(bytes) = self.map.written(name) {
             return Ok(bytes.to_owned());
         }
-        let asking = self
-            .map
-            .place(at)
-            .map(|p| self.map.file(p.file).name.clone());
+        let place = self.map.place(at);
+        let asking = place.map(|p| self.map.file(p.file).name.clone());
         let read = self.host.read_bytes(name, asking.as_deref().map(Path::new));
-        match read {
-            Ok((_, bytes)) => Ok(bytes),
-            Err(e) => Err(Box::new(unreadable(name, &e, at))),
-        }
+        read.map(|(_, bytes)| bytes)
+            .map_err(|e| Box::new(unreadable(name, &e, at)))
     }
 
     /// A place in the present file that is not copied, as a span: a blank line stands for it.
@@ -596,10 +586,11 @@ impl<'h> Preprocessor<'h> {
 
     /// The text of `from..to` of the present file.
     pub(super) fn raw(&self, from: usize, to: usize) -> &str {
-        self.frames
+        let text = self
+            .frames
             .last()
-            .and_then(|f| self.map.file(f.file).text.get(from..to))
-            .unwrap_or("")
+            .map_or("", |f| &self.map.file(f.file).text);
+        text.get(from..to).unwrap_or("")
     }
 
     /// Makes sure that the expanded text ends with a line end.
@@ -723,12 +714,9 @@ impl<'h> Preprocessor<'h> {
                 at = from + 2;
                 continue;
             }
-            let name_end = bytes[from + 1..]
-                .iter()
-                .position(|&c| {
-                    !c.is_ascii_alphanumeric() && !matches!(c, b'_' | b'.' | b' ' | b'-')
-                })
-                .map_or(bytes.len(), |n| from + 1 + n);
+            let ends = |c: &u8| !c.is_ascii_alphanumeric() && !b"_. -".contains(c);
+            let name_end = bytes[from + 1..].iter().position(ends);
+            let name_end = name_end.map_or(bytes.len(), |n| from + 1 + n);
             if bytes.get(name_end) == Some(&b'%') && name_end > from + 1 {
                 let (lo, _) = line.origin(from, name_end);
                 if let Some(value) = self.value(&line.text[from + 1..name_end], lo) {
@@ -737,10 +725,8 @@ impl<'h> Preprocessor<'h> {
                     continue;
                 }
             }
-            let digits = bytes[from + 1..]
-                .iter()
-                .take_while(|c| c.is_ascii_digit())
-                .count();
+            let behind = bytes[from + 1..].iter();
+            let digits = behind.take_while(|c| c.is_ascii_digit()).count();
             if digits > 0
                 && let Some(frame) = self.frames.last()
                 && !(frame.arguments.is_none() && in_text(&line.text, from, self.marks.dollar))
@@ -778,10 +764,7 @@ impl<'h> Preprocessor<'h> {
             // `%solveStat.Capability Problems%`, `%modelStat.Infeasible-No Solution%`
             return variables::constant(name).map(str::to_owned);
         }
-        if let Some(v) = self.names.get(name) {
-            return Some(v.to_owned());
-        }
-        if let Some(v) = variables::constant(name) {
+        if let Some(v) = self.names.get(name).or_else(|| variables::constant(name)) {
             return Some(v.to_owned());
         }
         let lower = name.to_ascii_lowercase();
@@ -830,17 +813,14 @@ impl<'h> Preprocessor<'h> {
             },
             "ifile" | "sfile" | "incname" => self.frames.last()?.path.display().to_string(),
             "incparentl" => self.map.line(self.frames.last()?.asked).to_string(),
-            "incparent" => self
-                .frames
-                .iter()
-                .rev()
-                .nth(1)
-                .map_or(String::new(), |f| f.path.display().to_string()),
+            "incparent" => {
+                let parent = self.frames.iter().rev().nth(1);
+                parent.map_or(String::new(), |f| f.path.display().to_string())
+            }
             "line" | "incline" | "listline" | "prline" => {
                 self.map.file(self.frames.last()?.file).line(lo).to_string()
             }
-            "date" | "rdate" => super::directives::date_text(now),
-            "date1" => super::directives::date_text(now),
+            "date" | "rdate" | "date1" => super::directives::date_text(now),
             "time" | "rtime" => super::directives::time_text(now),
             "title" => self.map.title.clone().unwrap_or_default(),
             "filesys" => "UNIX".into(),
@@ -867,9 +847,8 @@ impl<'h> Preprocessor<'h> {
 
     /// The rest of a line from `from` on: comments and macros, then into the expanded text.
     pub(super) fn finish_text(&mut self, mut line: Line, from: usize) -> Outcome<()> {
-        let end = self.strip_comments(&mut line, from, false);
+        let mut end = self.strip_comments(&mut line, from, false);
         let (first, last) = self.marks.columns;
-        let mut end = end;
         if (first, last) != (1, usize::MAX) {
             end = end.min(byte_of_column(&line.text, last.saturating_add(1)));
             let start = byte_of_column(&line.text, first).min(end);
@@ -880,11 +859,9 @@ impl<'h> Preprocessor<'h> {
         if !self.macros.is_empty() {
             match self.macros.calls(&line.text[..end]) {
                 Ok(calls) => {
-                    if !calls.is_empty() {
-                        let tail = line.text.len() - end;
-                        line.replace(&calls);
-                        end = line.text.len() - tail;
-                    }
+                    let tail = line.text.len() - end;
+                    line.replace(&calls);
+                    end = line.text.len() - tail;
                 }
                 Err(e) => {
                     let (lo, hi) = line.origin(e.from, e.to);

@@ -110,16 +110,12 @@ pub(super) fn explain(
         text,
         at,
     };
-    if let Some(found) = foreign::statement(&f) {
-        return found;
-    }
-    if let Some(found) = missing_semicolon(&f).or_else(|| other_end(&f)) {
-        return found;
-    }
-    if let Some(d) = neighbours::equation(&f) {
-        return Explanation::of(d);
-    }
-    if let Some(found) = foreign::keyword_inside(&f) {
+    let found = foreign::statement(&f)
+        .or_else(|| missing_semicolon(&f))
+        .or_else(|| other_end(&f))
+        .or_else(|| neighbours::equation(&f).map(Explanation::of))
+        .or_else(|| foreign::keyword_inside(&f));
+    if let Some(found) = found {
         return found;
     }
     if let Some(d) = slips::at_token(&f).or_else(|| slip(&f)) {
@@ -149,27 +145,20 @@ fn missing_semicolon(f: &Failure<'_>) -> Option<Explanation> {
     let bytes = f.text.as_bytes();
     // Where the second statement begins: at the error, or at the word before `=`, `(`, `..`.
     let mut second = f.at;
-    if !bytes.get(second).is_some_and(|b| words::is_letter(*b)) {
-        if !bytes
-            .get(f.at)
-            .is_some_and(|b| matches!(b, b'=' | b'.' | b'(' | b'$' | b':'))
-        {
+    let is_letter = |at: usize| bytes.get(at).is_some_and(|b| words::is_letter(*b));
+    if !is_letter(second) {
+        if !matches!(bytes.get(f.at)?, b'=' | b'.' | b'(' | b'$' | b':') {
             return None;
         }
         let before = f.text[..f.at].trim_end();
-        let start = before
-            .rfind(|c: char| !c.is_ascii_alphanumeric() && c != '_')
-            .map_or(0, |n| n + 1);
-        second = start;
-        if second == 0 || !bytes.get(second).is_some_and(|b| words::is_letter(*b)) {
-            return None;
-        }
+        let start = before.rfind(|c: char| !c.is_ascii_alphanumeric() && c != '_');
+        second = start.map_or(0, |n| n + 1);
     }
-    if second == 0 || !begins_statement(f.text, second) {
+    if second == 0 || !is_letter(second) || !begins_statement(f.text, second) {
         return None;
     }
     let first = f.text[..second].trim_end();
-    let line_start = first.len() < second && f.text[first.len()..second].contains('\n');
+    let line_start = f.text[first.len()..second].contains('\n');
     if !line_start && second != f.at {
         return None;
     }
@@ -237,29 +226,18 @@ fn begins_statement(text: &str, at: usize) -> bool {
         return true;
     }
     let begins_line = text[..at].trim_end_matches([' ', '\t']).ends_with('\n');
-    if begins_line
-        && ["draw", "figure"]
-            .iter()
-            .any(|w| text[at..i].eq_ignore_ascii_case(w))
-    {
+    let word = &text[at..i];
+    if begins_line && (word.eq_ignore_ascii_case("draw") || word.eq_ignore_ascii_case("figure")) {
         return true;
     }
     loop {
-        while i < bytes.len() && words::is_blank(bytes[i]) {
-            i += 1;
-        }
+        i = words::behind_blanks(bytes, i);
         match bytes.get(i) {
             Some(b'.') if bytes.get(i + 1) == Some(&b'.') => return true,
             Some(b'.') => i = words::word_end(bytes, i + 1).max(i + 1),
             Some(b'=') => return !is_relation(&bytes[i..]),
             Some(b':') => return bytes.get(i + 1) == Some(&b'='),
-            Some(b'$') => {
-                i += 1;
-                while i < bytes.len() && words::is_blank(bytes[i]) {
-                    i += 1;
-                }
-                i = words::word_end(bytes, i);
-            }
+            Some(b'$') => i = words::word_end(bytes, words::behind_blanks(bytes, i + 1)),
             Some(b'(') => match closing(bytes, i) {
                 Some(end) => i = end + 1,
                 None => return false,
@@ -299,53 +277,32 @@ pub(super) fn closing(bytes: &[u8], open: usize) -> Option<usize> {
 fn slip(f: &Failure<'_>) -> Option<Diagnostic> {
     let bytes = f.text.as_bytes();
     let token = f.token(f.at);
-    let first = token.chars().next();
-    match first {
-        Some('\'' | '"') if f.raw.class == Class::File => {
-            return Some(
-                f.error("E0210", f.at, 1)
-                    .says("a file has a name in the text, and one outside of it")
-                    .help("write `file out / 'out.txt' /;`, and `put out 'text' /;`"),
-            );
-        }
-        Some('\'' | '"') => {
-            let line = f.text[f.at + 1..].split('\n').next().unwrap_or("");
-            if !line.contains(token) {
-                return Some(
-                    f.error("E0206", f.at, 1).says("this quote is not closed on its line")
-                        .help("close it; a text that holds `'` goes in `\"…\"`, and the other way round"),
-                );
-            }
-            return Some(
-                f.error("E0210", f.at, 1)
-                    .says("a text in quotes cannot stand here")
-                    .help("is a comma, an operator or a `;` missing before it?"),
-            );
-        }
-        Some(')' | ']' | '}') if unmatched_close(bytes, f.at) => {
-            return Some(
-                f.error("E0207", f.at, 1)
-                    .says(format!("this `{token}` closes nothing"))
-                    .help("take it out, or write the opening parenthesis"),
-            );
-        }
-        Some('%') => {
-            let rest = &f.text[f.at + 1..];
-            if let Some(n) = rest
-                .find('%')
-                .filter(|n| *n > 0 && !rest[..*n].contains(char::is_whitespace))
-            {
-                let name = &rest[..n];
-                return Some(
-                    f.error("E0208", f.at, n + 2)
-                        .says(format!("`%{name}%` has no value"))
-                        .help(format!(
-                            "set it with `$set {name} …` before this line, or with `-D {name}=…`"
-                        )),
-                );
-            }
-        }
-        Some('$') if f.raw.class == Class::Directive => {}
+    let rest = f.text.get(f.at + 1..).unwrap_or("");
+    let end = words::word_end(bytes, f.at);
+    let variable = rest.split_once('%').map_or("", |(name, _)| name);
+    Some(match token.chars().next() {
+        Some('\'' | '"') if f.raw.class == Class::File => f
+            .error("E0210", f.at, 1)
+            .says("a file has a name in the text, and one outside of it")
+            .help("write `file out / 'out.txt' /;`, and `put out 'text' /;`"),
+        Some('\'' | '"') if !rest.split('\n').next().unwrap_or("").contains(token) => f
+            .error("E0206", f.at, 1)
+            .says("this quote is not closed on its line")
+            .help("close it; a text that holds `'` goes in `\"…\"`, and the other way round"),
+        Some('\'' | '"') => f
+            .error("E0210", f.at, 1)
+            .says("a text in quotes cannot stand here")
+            .help("is a comma, an operator or a `;` missing before it?"),
+        Some(')' | ']' | '}') if unmatched_close(bytes, f.at) => f
+            .error("E0207", f.at, 1)
+            .says(format!("this `{token}` closes nothing"))
+            .help("take it out, or write the opening parenthesis"),
+        Some('%') if !variable.is_empty() && !variable.contains(char::is_whitespace) => f
+            .error("E0208", f.at, variable.len() + 2)
+            .says(format!("`%{variable}%` has no value"))
+            .help(format!(
+                "set it with `$set {variable} …` before this line, or with `-D {variable}=…`"
+            )),
         Some(c) if !c.is_ascii() => {
             let help = match c {
                 '\u{2018}' | '\u{2019}' | '\u{201c}' | '\u{201d}' => {
@@ -366,41 +323,26 @@ fn slip(f: &Failure<'_>) -> Option<Diagnostic> {
                     "names consist of the letters a to z, digits and `_`; other signs may stand in texts and quoted labels"
                 }
             };
-            return Some(
-                f.error("E0209", f.at, c.len_utf8())
-                    .says(format!("`{c}` cannot stand here"))
-                    .help(help),
-            );
+            let d = f.error("E0209", f.at, c.len_utf8());
+            d.says(format!("`{c}` cannot stand here")).help(help)
         }
-        Some(c) if c.is_ascii_digit() => {
-            // The point may belong to the number.
-            let end = words::word_end(bytes, f.at);
-            if bytes[f.at..end].iter().any(u8::is_ascii_alphabetic) {
-                let help = if token.bytes().any(|b| matches!(b, b'd' | b'D')) {
-                    "exponents are written with `e`: `1e3`"
-                } else {
+        // The point may belong to the number.
+        Some('0'..='9') if bytes[f.at..end].iter().any(u8::is_ascii_alphabetic) => f
+            .error("E0209", f.at, end - f.at)
+            .says(format!("`{token}` is neither a number nor a name"))
+            .help(match token.contains(['d', 'D']) {
+                true => "exponents are written with `e`: `1e3`",
+                false => {
                     "names begin with a letter; between a number and a name an operator is missing"
-                };
-                return Some(
-                    f.error("E0209", f.at, end - f.at)
-                        .says(format!("`{token}` is neither a number nor a name"))
-                        .help(help),
-                );
-            }
-        }
-        Some('_') => {
-            return Some(
-                f.error("E0209", f.at, token.len())
-                    .says(format!("the name `{token}` begins with `_`"))
-                    .help("names begin with a letter"),
-            );
-        }
-        _ => {}
-    }
-    if f.raw.class.declares() {
-        return in_declaration(f, token);
-    }
-    None
+                }
+            }),
+        Some('_') => f
+            .error("E0209", f.at, token.len())
+            .says(format!("the name `{token}` begins with `_`"))
+            .help("names begin with a letter"),
+        _ if f.raw.class.declares() => return in_declaration(f, token),
+        _ => return None,
+    })
 }
 
 /// In the declarations: values without slashes, keywords as names.
@@ -414,46 +356,39 @@ fn in_declaration(f: &Failure<'_>, token: &str) -> Option<Diagnostic> {
     let last = head.rsplit(|c: char| c.is_whitespace() || c == ',').next();
     let name = &name[head.len() - last.map_or(0, str::len)..];
     let here = f.span(f.at, f.at).lo as usize;
-    if f.raw.class == Class::Equation && f.expanded[here..].starts_with("..") {
-        return Some(
-            f.error("E0221", f.at, 2)
-                .says("an equation is declared in one statement and defined in another")
-                .help(format!(
-                    "write `equation {name};` and then `{name}.. left =e= right;`"
-                )),
-        );
-    }
-    if let Some(d) = declared_attribute(f, token, name) {
-        return Some(d);
-    }
-    if matches!(token, "-" | ".") && before_is_name(f.text, f.at) {
-        return Some(
-            f.error("E0209", f.at, 1)
-                .says(format!("`{token}` cannot stand in a name"))
-                .help("names consist of letters, digits and `_`: `unit_cost`"),
-        );
-    }
-    if f.raw.class == Class::Variable
-        && (f.text.contains(['<', '>']) || f.text[..f.at].contains(" in "))
-        && token.starts_with(|c: char| c.is_ascii_digit())
-    {
-        return Some(
-            f.error("E0220", f.at, token.len())
-                .says("a declaration gives no bounds")
-                .help("declare `variable x;` and assign the bounds: `x.lo = 0; x.up = 5;`"),
-        );
-    }
-    if token.starts_with(|c: char| c.is_ascii_digit())
-        && f.text[..f.at].trim_end().ends_with(['(', ','])
-    {
-        return Some(
-            f.error("E0220", f.at, token.len())
-                .says("an index position is a set, not a number")
-                .help(format!("declare `set i / 1*{token} /;` and write `x(i)`")),
-        );
-    }
-    if matches!(token, "=" | ":") {
-        let help = match f.raw.class {
+    let class = f.raw.class;
+    let number = token.starts_with(|c: char| c.is_ascii_digit());
+    let attribute = f.token(f.at + 1).to_ascii_lowercase();
+    let is_attribute = matches!(&*attribute, "l" | "lo" | "up" | "fx");
+    let in_bounds = || f.text.contains(['<', '>']) || f.text[..f.at].contains(" in ");
+    Some(match token {
+        _ if class == Class::Equation && f.expanded[here..].starts_with("..") => f
+            .error("E0221", f.at, 2)
+            .says("an equation is declared in one statement and defined in another")
+            .help(format!(
+                "write `equation {name};` and then `{name}.. left =e= right;`"
+            )),
+        // `variable x.lo = 3;`
+        "." if class == Class::Variable && is_attribute => f
+            .error("E0220", f.at, 1 + attribute.len())
+            .says("a declaration gives no bounds")
+            .help(format!(
+                "declare `variable {name};` and write `{name}.{attribute} = …;` in a statement of its own"
+            )),
+        "-" | "." if before_is_name(f.text, f.at) => f
+            .error("E0209", f.at, 1)
+            .says(format!("`{token}` cannot stand in a name"))
+            .help("names consist of letters, digits and `_`: `unit_cost`"),
+        _ if number && class == Class::Variable && in_bounds() => f
+            .error("E0220", f.at, token.len())
+            .says("a declaration gives no bounds")
+            .help("declare `variable x;` and assign the bounds: `x.lo = 0; x.up = 5;`"),
+        _ if number && f.text[..f.at].trim_end().ends_with(['(', ',']) => f
+            .error("E0220", f.at, token.len())
+            .says("an index position is a set, not a number")
+            .help(format!("declare `set i / 1*{token} /;` and write `x(i)`")),
+        "=" | ":" => {
+            let help = match class {
             Class::Set => "write `set i / a, b, c /;`; a set that is computed is declared first and assigned then".to_owned(),
             Class::Model => "write `model m / all /;`".to_owned(),
             Class::Table => "leave it out: the labels of the columns stand in the next line, the rows below them".to_owned(),
@@ -464,35 +399,21 @@ fn in_declaration(f: &Failure<'_>, token: &str) -> Option<Diagnostic> {
             Class::Equation => format!("declare it first: `{name};`, and write what is equal in a statement of its own"),
             _ if name.ends_with([')', ']', '}']) => format!("declare it, then assign: `parameter {name}; {name} = …;`; or write `/ label 1, … /`"),
             _ => format!("write `scalar {name} / 5 /;`, or declare it first and assign then: `scalar {name}; {name} = 5;`"),
-        };
-        return Some(
+            };
             f.error("E0220", f.at, 1)
                 .says("a declaration gives values between slashes")
-                .label("`=` cannot stand here".replace('=', token))
-                .help(help),
-        );
-    }
-    if matches!(token, "<" | ">") {
-        let (side, positive) = match token {
-            "<" => ("up", ""),
-            _ => ("lo", "`positive variable x;`, or "),
-        };
-        return Some(
+                .label(format!("`{token}` cannot stand here"))
+                .help(help)
+        }
+        "<" | ">" => {
+            let (side, positive) = match token {
+                "<" => ("up", ""),
+                _ => ("lo", "`positive variable x;`, or "),
+            };
             f.error("E0220", f.at, 1).says("a declaration gives no bounds")
-                .help(format!("write {positive}the bound in a statement after the declaration: `{name}.{side} = …;`")),
-        );
-    }
-    None
-}
-
-/// `variable x.lo = 3;`
-fn declared_attribute(f: &Failure<'_>, token: &str, name: &str) -> Option<Diagnostic> {
-    let attribute = f.token(f.at + 1).to_ascii_lowercase();
-    let is_one = matches!(&*attribute, "l" | "lo" | "up" | "fx");
-    (token == "." && f.raw.class == Class::Variable && is_one).then(|| {
-        f.error("E0220", f.at, 1 + attribute.len()).says("a declaration gives no bounds").help(format!(
-            "declare `variable {name};` and write `{name}.{attribute} = …;` in a statement of its own"
-        ))
+                .help(format!("write {positive}the bound in a statement after the declaration: `{name}.{side} = …;`"))
+        }
+        _ => return None,
     })
 }
 
@@ -587,60 +508,45 @@ fn form(f: &Failure<'_>) -> Option<Diagnostic> {
 /// The last resort: what pest would have accepted.
 fn expected(f: &Failure<'_>, e: &Error<Rule>) -> Diagnostic {
     let mut wanted: Vec<String> = Vec::new();
-    let mut add = |s: String| {
-        if !wanted.contains(&s) {
-            wanted.push(s);
-        }
-    };
     if let ErrorVariant::ParsingError { positives, .. } = &e.variant {
-        for rule in positives {
-            if let Some(name) = called(*rule) {
-                add(name.into());
-            }
+        wanted.extend(positives.iter().filter_map(|r| called(*r)).map(Into::into));
+    }
+    for token in e.parse_attempts().iter().flat_map(|a| a.expected_tokens()) {
+        let t = token.to_string();
+        let t = t.trim_matches('`');
+        if matches!(t, ")" | "]" | "}" | "," | "/" | "=" | "..") {
+            wanted.push(format!("`{t}`"));
         }
     }
-    if let Some(attempts) = e.parse_attempts() {
-        for token in attempts.expected_tokens() {
-            let t = token.to_string();
-            let t = t.trim_matches('`');
-            if matches!(t, ")" | "]" | "}" | "," | "/" | "=" | "..") {
-                add(format!("`{t}`"));
-            }
+    let mut seen = Vec::new();
+    wanted.retain(|w| {
+        !seen.contains(w) && {
+            seen.push(w.clone());
+            true
         }
-    }
+    });
     let token = f.token(f.at);
-    let (span, message) = if token.is_empty() {
-        let end = f.text.trim_end().len();
-        (
-            f.span(end.saturating_sub(1), end),
-            "the statement ends too early".to_owned(),
-        )
-    } else {
-        let what = match token.as_bytes()[0] {
-            1 => "a text",
-            2 => "data",
-            _ => "",
-        };
-        let shown: String = token.chars().filter(|c| !c.is_control()).take(40).collect();
-        (
-            f.span(f.at, f.at + token.len()),
-            if what.is_empty() {
-                format!("`{shown}` cannot stand here")
-            } else {
-                format!("{what} cannot stand here")
-            },
-        )
+    let d = match token.as_bytes().first() {
+        None => {
+            let end = f.text.trim_end().len();
+            Diagnostic::error("E0210", f.span(end.saturating_sub(1), end))
+                .says("the statement ends too early")
+        }
+        Some(first) => {
+            let shown: String = token.chars().filter(|c| !c.is_control()).take(40).collect();
+            let what = match first {
+                1 => "a text".into(),
+                2 => "data".into(),
+                _ => format!("`{shown}`"),
+            };
+            let d = f.error("E0210", f.at, token.len());
+            d.says(format!("{what} cannot stand here"))
+        }
     };
-    let d = Diagnostic::error("E0210", span).says(message);
-    if wanted.is_empty() {
-        return d;
-    }
     wanted.truncate(5);
-    let last = wanted.pop().unwrap_or_default();
-    let list = if wanted.is_empty() {
-        last
-    } else {
-        format!("{} or {last}", wanted.join(", "))
-    };
-    d.help(format!("expected {list}"))
+    match (wanted.pop(), wanted.join(", ")) {
+        (None, _) => d,
+        (Some(only), before) if before.is_empty() => d.help(format!("expected {only}")),
+        (Some(last), before) => d.help(format!("expected {before} or {last}")),
+    }
 }

@@ -152,27 +152,21 @@ const TRACES: &[(Language, &[&str])] = &[
 pub(super) fn statement(f: &Failure<'_>) -> Option<Explanation> {
     let text = f.text.trim_start();
     let lead = f.text.len() - text.len();
-    if let Some(found) = comment(f, text, lead) {
-        return Some(found);
-    }
     let word = &text[..words::word_end(text.as_bytes(), 0)];
-    let start = f.span(lead, lead).lo as usize;
-    if let Some(found) = line(f.expanded, Span::new(start as u32, start as u32)) {
-        return Some(found);
-    }
     let rest = text[word.len()..].trim_start();
     let lower = word.to_ascii_lowercase();
-    if !word.is_empty()
-        && f.raw.class != Class::Equation
-        && let Some(found) = blocks(f, &lower, rest, lead)
-    {
+    let blocks = || match word.is_empty() || f.raw.class == Class::Equation {
+        true => None,
+        false => blocks(f, &lower, rest, lead),
+    };
+    let start = f.span(lead, lead);
+    let found = comment(f, text, lead).or_else(|| line(f.expanded, start));
+    if let Some(found) = found.or_else(blocks) {
         return Some(found);
     }
     if text.to_ascii_lowercase().starts_with("s.t.") {
-        let d = f
-            .error("E0231", lead, 4)
-            .says("constraints are equations here")
-            .help(CONSTRAINT);
+        let d = f.error("E0231", lead, 4);
+        let d = d.says("constraints are equations here").help(CONSTRAINT);
         return Some(said(d, Language::Ampl));
     }
     let found = IDIOMS
@@ -180,11 +174,8 @@ pub(super) fn statement(f: &Failure<'_>) -> Option<Explanation> {
         .find(|i| i.words.contains(&lower.as_str()) && i.stands.fits(rest))
         .filter(|_| !rest.to_ascii_lowercase().starts_with("variable"));
     if let Some(i) = found {
-        let d = f
-            .error("E0231", lead, word.len())
-            .says(i.message)
-            .help(i.help);
-        let mut found = said(d, i.language);
+        let d = f.error("E0231", lead, word.len());
+        let mut found = said(d.says(i.message).help(i.help), i.language);
         if lower == "do" {
             found.go_on = line_end(f, lead);
         }
@@ -201,10 +192,9 @@ impl Stands {
             Stands::Alone => !name,
             Stands::Colon => rest.starts_with(':'),
             Stands::Typed => {
+                let types = ["int", "float", "bool", "set"];
                 rest.starts_with(|c: char| c.is_ascii_digit())
-                    || ["int", "float", "bool", "set"]
-                        .iter()
-                        .any(|t| rest.starts_with(t))
+                    || types.iter().any(|t| rest.starts_with(t))
             }
             Stands::Call => rest.starts_with('(') || !name,
             Stands::Equals => equals,
@@ -230,12 +220,8 @@ fn comment(f: &Failure<'_>, text: &str, lead: usize) -> Option<Explanation> {
     const HELP: &str = "a comment is a line with `*` in its first column; in a `.blk` file also `//` to the end of the line; `$onEolCom` allows `!!`";
     let mark = ["#=", "#", "//", "/*", "--", "%%", "%", "!", "\"\"\"", "*"];
     let mark = mark.into_iter().find(|m| text.starts_with(m))?;
-    if mark == "%"
-        && text[1..]
-            .split('%')
-            .next()
-            .is_some_and(|n| text[1..].contains('%') && !n.contains(char::is_whitespace))
-    {
+    let name = text[1..].split_once('%').filter(|_| mark == "%");
+    if name.is_some_and(|(name, _)| !name.contains(char::is_whitespace)) {
         // `%name%` without a value.
         return None;
     }
@@ -263,27 +249,23 @@ pub(super) fn line(expanded: &str, statement: Span) -> Option<Explanation> {
     let lo = statement.lo as usize;
     let line = expanded[lo..].split('\n').next().unwrap_or("");
     let place = |at: usize, len: usize| Span::new((lo + at) as u32, (lo + at + len) as u32);
-    if let Some(found) = macros(line, &place) {
-        let mut found = found;
+    if let Some(mut found) = macros(line, &place) {
         if found.language == Language::Lingo {
             found.go_on = GoOn::At((lo + behind(&expanded[lo..])) as u32);
         }
         return Some(found);
     }
     let word = &line[..words::word_end(line.as_bytes(), 0)];
-    let section = line[word.len()..].trim_start().starts_with(':')
-        && !line[word.len()..].trim_start().starts_with(":=");
-    if section
-        && let Some(i) = IDIOMS.iter().find(|i| {
-            i.stands == Stands::Colon && i.words.contains(&word.to_ascii_lowercase().as_str())
-        })
-    {
-        let d = Diagnostic::error("E0231", place(0, word.len()))
-            .says(i.message)
-            .help(i.help);
-        return Some(said(d, i.language));
+    let (rest, lower) = (line[word.len()..].trim_start(), word.to_ascii_lowercase());
+    let section = rest.starts_with(':') && !rest.starts_with(":=");
+    let known = |i: &&Idiom| i.stands == Stands::Colon && i.words.contains(&lower.as_str());
+    match IDIOMS.iter().find(known).filter(|_| section) {
+        Some(i) => {
+            let d = Diagnostic::error("E0231", place(0, word.len()));
+            Some(said(d.says(i.message).help(i.help), i.language))
+        }
+        None => trace(line, &place),
     }
-    trace(line, &place)
 }
 
 /// `@variable(m, x >= 0)`, `@SUM(…)`, `@m.Constraint(…)`
@@ -318,12 +300,8 @@ fn macros(text: &str, place: &dyn Fn(usize, usize) -> Span) -> Option<Explanatio
         Language::Lingo => "this is LINGO, not a model of this language",
         _ => "this is a Python program, not a model",
     };
-    Some(said(
-        Diagnostic::error("E0231", place(0, len + 1))
-            .says(origin)
-            .help(help),
-        language,
-    ))
+    let d = Diagnostic::error("E0231", place(0, len + 1));
+    Some(said(d.says(origin).help(help), language))
 }
 
 /// The end of the line: where a language without `;` is read on.
@@ -375,14 +353,8 @@ fn blocks(f: &Failure<'_>, word: &str, rest: &str, lead: usize) -> Option<Explan
             let python = head.trim_end().ends_with(':');
             let d = f.error("E0231", lead, word.len()).says("a loop over a set is written with `loop`")
                 .help("write `loop(i, … );`; in an equation the index stands behind its name: `e(i).. …`");
-            Some(said(
-                d,
-                if python {
-                    Language::Python
-                } else {
-                    Language::Blocks
-                },
-            ))
+            let blocks = [Language::Blocks, Language::Python];
+            Some(said(d, blocks[usize::from(python)]))
         }
         ("for" | "while" | "if" | "loop", _) if body_in_braces(rest) => say(
             "statements are not grouped by braces".into(),
@@ -462,19 +434,15 @@ fn body_in_braces(rest: &str) -> bool {
 /// A word that only another language has.
 fn trace(line: &str, place: &dyn Fn(usize, usize) -> Span) -> Option<Explanation> {
     let lower = line.to_ascii_lowercase();
-    let mut found = TRACES.iter().find_map(|(language, signs)| {
-        let at = |sign: &str| {
-            lower
-                .find(sign)
-                .map(|at| (*language, at, sign.trim_end_matches(['(', ' ', '=']).len()))
-        };
-        signs.iter().find_map(|s| at(s))
-    });
+    let signs = TRACES.iter().flat_map(|t| t.1.iter().map(|s| (t.0, *s)));
+    let sign = |(language, sign): (Language, &str)| {
+        let len = sign.trim_end_matches(['(', ' ', '=']).len();
+        Some((language, lower.find(sign)?, len))
+    };
     let list = line.contains('[') && line.trim_end().ends_with(']');
-    if found.is_none() && list && line.contains(" for ") && line.contains(" in ") {
-        found = Some((Language::Python, 0, line.trim_end().len()));
-    }
-    let (language, at, len) = found?;
+    let list = list && line.contains(" for ") && line.contains(" in ");
+    let list = list.then(|| (Language::Python, 0, line.trim_end().len()));
+    let (language, at, len) = { signs }.find_map(sign).or(list)?;
     let name = match language {
         Language::Julia => "a Julia program",
         Language::Matlab => "a MATLAB program",
@@ -520,11 +488,10 @@ fn misspelled(f: &Failure<'_>, word: &str, rest: &str, lead: usize) -> Option<Ex
         let meant = nearest(word, KINDS).unwrap_or("positive");
         let d = f
             .error("E0219", lead, word.len())
-            .says(format!("`{word}` is no kind of variable"));
-        return Some(Explanation::of(
-            d.label(format!("write `{meant}`"))
-                .help(format!("there are: {}", KINDS.join(", "))),
-        ));
+            .says(format!("`{word}` is no kind of variable"))
+            .label(format!("write `{meant}`"))
+            .help(format!("there are: {}", KINDS.join(", ")));
+        return Some(Explanation::of(d));
     }
     if !rest.starts_with(|c: char| c.is_ascii_alphabetic()) {
         return None;
@@ -535,11 +502,9 @@ fn misspelled(f: &Failure<'_>, word: &str, rest: &str, lead: usize) -> Option<Ex
         "variable" | "variables" => "positive",
         _ => meant,
     };
-    Some(Explanation::of(
-        f.error("E0219", lead, word.len())
-            .says(format!("`{word}` is not a statement"))
-            .label(format!("write `{meant}`")),
-    ))
+    let d = f.error("E0219", lead, word.len());
+    let d = d.says(format!("`{word}` is not a statement"));
+    Some(Explanation::of(d.label(format!("write `{meant}`"))))
 }
 
 /// A keyword inside an expression, before which the splitter has cut: `b = if a > 0 then 1 else 2;`.

@@ -15,9 +15,7 @@ pub(super) fn equation(f: &Failure<'_>) -> Option<Diagnostic> {
     let bytes = f.text.as_bytes();
     let dots = top_level(bytes, 0, |b| b.starts_with(b".."));
     let relation = top_level(bytes, dots.map_or(0, |d| d + 2), is_relation);
-    if let Some(at) = dots
-        && let Some(d) = after_dots(f, lead, at)
-    {
+    if let Some(d) = dots.and_then(|at| after_dots(f, lead, at)) {
         return Some(d);
     }
     match (dots, relation) {
@@ -25,15 +23,13 @@ pub(super) fn equation(f: &Failure<'_>) -> Option<Diagnostic> {
         (None, None) => bound(f, lead),
         (Some(dots), None) => without_relation(f, dots),
         (Some(_), Some(first)) => {
-            let second = top_level(bytes, first + 3, |b| {
-                is_relation(b) || b.starts_with(b"<=") || b.starts_with(b">=")
-            })?;
-            Some(
+            let relates = |b: &[u8]| is_relation(b) || b.starts_with(b"<=") || b.starts_with(b">=");
+            top_level(bytes, first + 3, relates).map(|second| {
                 f.error("E0222", second, 3)
                     .says("an equation has one relation")
                     .label("a second one")
-                    .help("write two equations, or bounds: `x.lo = 1; x.up = 4;`"),
-            )
+                    .help("write two equations, or bounds: `x.lo = 1; x.up = 4;`")
+            })
         }
     }
 }
@@ -51,13 +47,10 @@ fn after_dots(f: &Failure<'_>, lead: usize, dots: usize) -> Option<Diagnostic> {
         Some(b'(') => {
             let close = closing(bytes, dots + 2)?;
             let indices = &f.text[dots + 3..close];
-            let simple = indices
-                .bytes()
-                .all(|b| b.is_ascii_alphanumeric() || matches!(b, b',' | b' ' | b'_'));
-            let next = f.text[close + 1..]
-                .trim_start()
-                .starts_with(|c: char| c.is_ascii_alphanumeric() || c == '(');
-            (simple && next && !name.ends_with(')')).then(|| {
+            let plain = |b: u8| b.is_ascii_alphanumeric() || matches!(b, b',' | b' ' | b'_');
+            let begins = |c: char| c.is_ascii_alphanumeric() || c == '(';
+            let next = f.text[close + 1..].trim_start().starts_with(begins);
+            (indices.bytes().all(plain) && next && !name.ends_with(')')).then(|| {
                 f.error("E0221", dots + 2, close - dots - 1)
                     .says("the indices of an equation stand before the dots")
                     .help(format!("write `{name}({indices}).. left =e= right;`"))
@@ -71,19 +64,14 @@ fn after_dots(f: &Failure<'_>, lead: usize, dots: usize) -> Option<Diagnostic> {
 fn without_dots(f: &Failure<'_>, lead: usize, relation: usize) -> Option<Diagnostic> {
     let bytes = f.text.as_bytes();
     let word = words::word_end(bytes, lead);
-    let blanks = |from: usize| {
-        from + bytes[from..]
-            .iter()
-            .take_while(|b| words::is_blank(**b))
-            .count()
-    };
     let mut end = word;
-    if let Some(b'(' | b'[' | b'{') = bytes.get(blanks(word)) {
-        end = closing(bytes, blanks(word))? + 1;
+    let open = words::behind_blanks(bytes, word);
+    if let Some(b'(' | b'[' | b'{') = bytes.get(open) {
+        end = closing(bytes, open)? + 1;
     }
     let (name, sign) = (&f.text[lead..end], &f.text[relation..relation + 3]);
     let operation = is_sum(&f.text[lead..word]);
-    let next = blanks(end);
+    let next = words::behind_blanks(bytes, end);
     let named = word > lead
         && !operation
         && bytes.get(next).is_some_and(|b| {
@@ -99,30 +87,24 @@ fn without_dots(f: &Failure<'_>, lead: usize, relation: usize) -> Option<Diagnos
         b'.' | b':' => (next, 1),
         _ => (lead, end - lead),
     };
-    Some(
-        f.error("E0221", at, len)
-            .says(format!(
-                "two dots stand behind the name of an equation: `{name}..`"
-            ))
-            .label("`..` is missing here")
-            .help(format!("write `{name}.. left {sign} right;`")),
-    )
+    let message = format!("two dots stand behind the name of an equation: `{name}..`");
+    let d = f.error("E0221", at, len).says(message);
+    let d = d.label("`..` is missing here");
+    Some(d.help(format!("write `{name}.. left {sign} right;`")))
 }
 
 /// `x >= 3;`, `x(i) <= 3;`, `c1: x + y <= 10;`
 fn bound(f: &Failure<'_>, lead: usize) -> Option<Diagnostic> {
     let bytes = f.text.as_bytes();
-    if top_level(bytes, lead, |b| b[0] == b'=' && !b.starts_with(b"=="))
-        .is_some_and(|at| !matches!(bytes[at.saturating_sub(1)], b'<' | b'>'))
-    {
+    let equals = top_level(bytes, lead, |b| b[0] == b'=' && !b.starts_with(b"=="));
+    if equals.is_some_and(|at| !matches!(bytes[at.saturating_sub(1)], b'<' | b'>')) {
         return None;
     }
-    let at = top_level(bytes, lead, |b| {
-        b[0] == b'<' || b[0] == b'>' || b.starts_with(b"==")
-    })?;
+    let compares = |b: &[u8]| b[0] == b'<' || b[0] == b'>' || b.starts_with(b"==");
+    let at = top_level(bytes, lead, compares)?;
     let left = f.text[lead..at].trim();
-    let len = bytes[at..]
-        .iter()
+    let signs = bytes[at..].iter();
+    let len = signs
         .take_while(|b| matches!(b, b'<' | b'>' | b'='))
         .count();
     let (sign, side) = match bytes[at] {
@@ -170,11 +152,11 @@ fn without_relation(f: &Failure<'_>, dots: usize) -> Option<Diagnostic> {
     });
     let Some(at) = compare else {
         let end = f.text.trim_end().len();
-        let said = f
-            .error("E0222", end.saturating_sub(1), 1)
-            .says("this equation has no relation");
-        return (f.at >= end)
-            .then(|| said.help("write `=e=`, `=l=`, `=g=` or `=n=` between its sides"));
+        return (f.at >= end).then(|| {
+            f.error("E0222", end.saturating_sub(1), 1)
+                .says("this equation has no relation")
+                .help("write `=e=`, `=l=`, `=g=` or `=n=` between its sides")
+        });
     };
     let rest = &f.text[at..];
     // `=ge=`, `= l =`

@@ -49,21 +49,14 @@ fn sum(f: &Failure<'_>) -> Option<Diagnostic> {
         .unwrap_or("i");
     let lower = token.to_ascii_lowercase();
     let say = |message: &str, help: String| {
-        Some(
-            f.error("E0235", f.at, token.len().max(1))
-                .says(message)
-                .help(help),
-        )
+        let d = f.error("E0235", f.at, token.len().max(1)).says(message);
+        Some(d.help(help))
     };
+    let over =
+        |index| format!("write `{word}({index}, …)`, or `{word}((i,j), …)` for several indices");
     match lower.as_str() {
-        "in" => say(
-            "a sum names its index alone, without `in`",
-            format!("write `{word}({first}, …)`, or `{word}((i,j), …)` for several indices"),
-        ),
-        "for" => say(
-            "a sum names its index first",
-            format!("write `{word}(i, …)`, or `{word}((i,j), …)` for several indices"),
-        ),
+        "in" => say("a sum names its index alone, without `in`", over(first)),
+        "for" => say("a sum names its index first", over("i")),
         "," if inside.contains(['<', '>', '=']) => {
             let condition = inside.split_once(',').map_or("", |(_, c)| c.trim());
             say(
@@ -85,10 +78,7 @@ fn sum(f: &Failure<'_>) -> Option<Diagnostic> {
                 "write `{word}({first}, …)`; a condition follows the index behind `$`: `{word}({first}$(a({first}) > 0), …)`"
             ),
         ),
-        _ if !top_comma(inside) => say(
-            "a sum names its index first, then its term",
-            format!("write `{word}(i, …)`, or `{word}((i,j), …)` for several indices"),
-        ),
+        _ if !top_comma(inside) => say("a sum names its index first, then its term", over("i")),
         _ => None,
     }
 }
@@ -106,16 +96,13 @@ fn sum_condition(f: &Failure<'_>) -> Option<Diagnostic> {
     top_level(&inside[..end], dollar, |b| {
         matches!(b[0], b'<' | b'>' | b'=')
     })?;
-    let (index, condition) = (
-        f.text[open + 1..dollar].trim(),
-        f.text[dollar + 1..end].trim(),
-    );
-    Some(
-        f.error("E0235", dollar, end - dollar)
-            .says("a condition with an operator stands in parentheses")
-            .help(format!("write `{word}({index}$({condition}), …)`")),
-    )
+    let index = f.text[open + 1..dollar].trim();
+    let condition = f.text[dollar + 1..end].trim();
+    let d = f.error("E0235", dollar, end - dollar).says(IN_PARENTHESES);
+    Some(d.help(format!("write `{word}({index}$({condition}), …)`")))
 }
+
+const IN_PARENTHESES: &str = "a condition with an operator stands in parentheses";
 
 /// Whether a comma stands outside of parentheses.
 fn top_comma(text: &str) -> bool {
@@ -131,20 +118,9 @@ const OPERATORS: &[(&str, &str)] = &[
 ];
 
 /// Operators of other languages.
+#[rustfmt::skip]
 pub(super) fn at_token(f: &Failure<'_>) -> Option<Diagnostic> {
-    let known = [
-        display,
-        sum_condition,
-        sum,
-        solve,
-        control,
-        parts,
-        no_name,
-        operand,
-        bars,
-        operator,
-        sign,
-    ];
+    let known = [display, sum_condition, sum, solve, control, parts, no_name, operand, bars, operator, sign];
     known.iter().find_map(|slip| slip(f))
 }
 
@@ -170,132 +146,86 @@ fn operator(f: &Failure<'_>) -> Option<Diagnostic> {
             .find(|&i| bytes.get(i..i + op.len()) == Some(op.as_bytes()))
     };
     if let Some(at) = found("==") {
-        return Some(
-            not_an_operator(
-                f,
-                at,
-                "==",
-                "write `=` in assignments and conditions, `=e=` in equations",
-            )
-            .label("write `=`"),
-        );
+        let help = "write `=` in assignments and conditions, `=e=` in equations";
+        return Some(not_an_operator(f, at, "==", help).label("write `=`"));
     }
-    if f.at > 0 && bytes.get(f.at - 1..=f.at) == Some(b"<-") || is_here(f, "<-") {
-        let at = f.at - usize::from(!is_here(f, "<-"));
+    if let Some(at) = found("<-") {
         return Some(not_an_operator(f, at, "<-", "write `=`").label("write `=`"));
     }
     if is_here(f, "...") {
-        return Some(
-            f.error("E0232", f.at, 3)
-                .says("a statement goes over several lines without a sign")
-                .help("leave `...` out"),
-        );
+        let message = "a statement goes over several lines without a sign";
+        let d = f.error("E0232", f.at, 3).says(message);
+        return Some(d.help("leave `...` out"));
     }
     if let Some(at) = found("//") {
-        return Some(
-            f.error("E0230", at, 2)
-                .says("`//` does not begin a comment in this file")
-                .help("`$eolCom //` makes it one; files named `.blk` have it from the start"),
-        );
+        let message = "`//` does not begin a comment in this file";
+        let help = "`$eolCom //` makes it one; files named `.blk` have it from the start";
+        return Some(f.error("E0230", at, 2).says(message).help(help));
     }
-    for (op, write) in OPERATORS {
-        let at = if op.len() == 2 {
-            found(op)
-        } else {
-            is_here(f, op).then_some(f.at)
+    let (at, op, write) = OPERATORS.iter().find_map(|(op, write)| {
+        let at = match op.len() {
+            2 => found(op),
+            _ => is_here(f, op).then_some(f.at),
         };
-        if let Some(at) = at {
-            let base = last_word(f.text[..at].trim_end());
-            if *op == "^" && ["e", "exp"].iter().any(|w| base.eq_ignore_ascii_case(w)) {
-                return Some(not_an_operator(f, at, op, "write `exp(x)`"));
-            }
-            return Some(
-                not_an_operator(f, at, op, format!("write `{write}`"))
-                    .label(format!("write `{write}`")),
-            );
-        }
+        Some((at?, op, format!("write `{write}`")))
+    })?;
+    let base = last_word(f.text[..at].trim_end());
+    if *op == "^" && ["e", "exp"].iter().any(|w| base.eq_ignore_ascii_case(w)) {
+        return Some(not_an_operator(f, at, op, "write `exp(x)`"));
     }
-    None
+    Some(not_an_operator(f, at, op, write.clone()).label(write))
 }
 
 /// `5 %`, `+=`, `#`, `? :`, two operators in a row, none where one is missing.
 fn sign(f: &Failure<'_>) -> Option<Diagnostic> {
     let bytes = f.text.as_bytes();
     let say = |op: &str, help: &str| not_an_operator(f, f.at, op, help);
-    if is_here(f, "%") && !f.text[f.at + 1..].contains('%') {
-        let number = f.text[..f.at]
-            .trim_end()
-            .ends_with(|c: char| c.is_ascii_digit());
-        let ends = f.text[f.at + 1..]
-            .trim_start()
-            .starts_with(|c: char| !c.is_ascii_alphanumeric() && c != '(')
-            || f.text[f.at + 1..].trim().is_empty();
-        return Some(match number && ends {
-            true => say("%", "write 5 percent as `0.05`"),
-            false => say(
-                "%",
-                "write `mod(x, y)` for the remainder; a comment is a line with `*` in its first column",
-            ),
-        });
-    }
-    if bytes.get(f.at + 1) == Some(&b'=')
-        && matches!(bytes.get(f.at), Some(b'+' | b'-' | b'*' | b'/'))
-    {
-        let op = &f.text[f.at..f.at + 2];
-        return Some(say(
-            op,
-            &format!("write the left side again: `a = a {} b`", &op[..1]),
-        ));
-    }
-    if is_here(f, "#") {
-        return Some(
-            f.error("E0230", f.at, 1).says("`#` does not begin a comment")
-                .help("a comment is a line with `*` in its first column; in a `.blk` file also `//`; `$onEolCom` allows `!!` to the end of the line"),
-        );
-    }
-    if is_here(f, ":") && f.raw.class == Class::Algebra {
-        return Some(
-            f.error("E0221", f.at, 1)
-                .says("`:` does not begin an equation")
-                .label("write `..`")
-                .help("an equation is defined as `e(i).. left =e= right;`"),
-        );
-    }
-    if is_here(f, "?") {
-        return Some(say("?", "write `ifThen(c, a, b)`, or `a$c + b$(not c)`"));
-    }
-    let unary = matches!(bytes.get(f.at), Some(b'-' | b'+' | b'*' | b'/'));
-    if unary
-        && f.text[..f.at]
-            .trim_end()
-            .ends_with(['+', '-', '*', '/', '$', '='])
-    {
-        return Some(
-            f.error("E0212", f.at, 1)
-                .says("two operators in a row")
-                .label("this one needs parentheses")
-                .help("write `a*(-b)`, `$(-c)`"),
-        );
-    }
-    missing_operator(f)
+    let before = f.text[..f.at].trim_end();
+    let behind = f.text.get(f.at + 1..).unwrap_or("");
+    let arithmetic = matches!(bytes.get(f.at), Some(b'-' | b'+' | b'*' | b'/'));
+    Some(match f.token(f.at) {
+        "%" if !behind.contains('%') => {
+            let next = behind.trim_start().chars().next();
+            let ends = next.is_none_or(|c| !c.is_ascii_alphanumeric() && c != '(');
+            say("%", match before.ends_with(|c: char| c.is_ascii_digit()) && ends {
+                true => "write 5 percent as `0.05`",
+                false => "write `mod(x, y)` for the remainder; a comment is a line with `*` in its first column",
+            })
+        }
+        sign if arithmetic && behind.starts_with('=') => {
+            let help = format!("write the left side again: `a = a {sign} b`");
+            say(&f.text[f.at..f.at + 2], &help)
+        }
+        "#" => f
+            .error("E0230", f.at, 1)
+            .says("`#` does not begin a comment")
+            .help("a comment is a line with `*` in its first column; in a `.blk` file also `//`; `$onEolCom` allows `!!` to the end of the line"),
+        ":" if f.raw.class == Class::Algebra => f
+            .error("E0221", f.at, 1)
+            .says("`:` does not begin an equation")
+            .label("write `..`")
+            .help("an equation is defined as `e(i).. left =e= right;`"),
+        "?" => say("?", "write `ifThen(c, a, b)`, or `a$c + b$(not c)`"),
+        _ if arithmetic && before.ends_with(['+', '-', '*', '/', '$', '=']) => f
+            .error("E0212", f.at, 1)
+            .says("two operators in a row")
+            .label("this one needs parentheses")
+            .help("write `a*(-b)`, `$(-c)`"),
+        _ => return missing_operator(f),
+    })
 }
 
 /// `|x|`, `5!`
 fn bars(f: &Failure<'_>) -> Option<Diagnostic> {
-    let behind_operand = f.text[..f.at]
-        .trim_end()
-        .ends_with(|c: char| c.is_ascii_alphanumeric() || c == ')');
-    let next = f.token(f.at + 1);
-    let write = match f.token(f.at) {
+    let before = f.text[..f.at].trim_end();
+    let behind_operand = before.ends_with(|c: char| c.is_ascii_alphanumeric() || c == ')');
+    let (sign, next) = (f.token(f.at), f.token(f.at + 1));
+    let write = match sign {
         "|" if !behind_operand && next != "|" => "write `abs(x)`",
         "!" if behind_operand && next != "=" => "write `fact(n)`",
         _ => return None,
     };
-    Some(
-        f.error("E0232", f.at, 1)
-            .says(format!("`{}` is not an operator", f.token(f.at)))
-            .help(write),
-    )
+    Some(not_an_operator(f, f.at, sign, write))
 }
 
 /// `2 x`, `f d(i,j)`, `3(x + y)`, `1,5`, `a where b`.
@@ -310,53 +240,36 @@ fn missing_operator(f: &Failure<'_>) -> Option<Diagnostic> {
     if let Some(d) = direction(f, before) {
         return Some(d);
     }
-    match token.to_ascii_lowercase().as_str() {
-        "where" | "if" | "for" | "when" => Some(
-            f.error("E0232", f.at, token.len())
-                .says(format!("`{token}` is not an operator"))
-                .help("a condition stands behind `$`: `e(i)$(a(i) > 0).. …`, `x$(a > 0)`"),
-        ),
-        "in" => Some(
-            f.error("E0232", f.at, 2)
-                .says("`in` is not an operator")
-                .help("write `a >= 0 and a <= 2`; whether an element is in a set says `s(i)`"),
-        ),
-        "div" | "mod" => Some(
-            f.error("E0232", f.at, token.len())
-                .says(format!("`{token}` is not an operator"))
-                .help(match token.len() {
-                    3 if token.eq_ignore_ascii_case("mod") => "write `mod(x, y)`",
-                    _ => "write `floor(x/y)`",
-                }),
-        ),
+    let name = last_word(before);
+    let help = match token.to_ascii_lowercase().as_str() {
+        "where" | "if" | "for" | "when" => {
+            "a condition stands behind `$`: `e(i)$(a(i) > 0).. …`, `x$(a > 0)`"
+        }
+        "in" => "write `a >= 0 and a <= 2`; whether an element is in a set says `s(i)`",
+        "mod" => "write `mod(x, y)`",
+        "div" => "write `floor(x/y)`",
         "," if before.ends_with(|c: char| c.is_ascii_digit())
             && f.text[f.at + 1..].starts_with(|c: char| c.is_ascii_digit()) =>
         {
-            Some(
-                f.error("E0209", f.at, 1)
-                    .says("decimals stand behind a point")
-                    .label("write `.`"),
-            )
+            let d = f.error("E0209", f.at, 1);
+            return Some(d.says("decimals stand behind a point").label("write `.`"));
         }
-        t if t != "(" && is_function(last_word(before)) => {
-            let name = last_word(before);
-            Some(
-                f.error("E0212", f.at, token.len())
-                    .says(format!("`{name}` takes its argument in parentheses"))
-                    .help(format!("write `{name}({token})`")),
-            )
+        t if t != "(" && is_function(name) => {
+            let d = f.error("E0212", f.at, token.len());
+            let d = d.says(format!("`{name}` takes its argument in parentheses"));
+            return Some(d.help(format!("write `{name}({token})`")));
         }
         t if t == "(" || t.starts_with(|c: char| c.is_ascii_alphanumeric()) => {
-            let help = "write `*` between factors, `+` or `-` between terms";
-            (f.at > 0 && (before.contains('=') || before.contains(".."))).then(|| {
+            return (f.at > 0 && (before.contains('=') || before.contains(".."))).then(|| {
                 f.error("E0212", f.at, token.len())
                     .says(format!("an operator is missing before `{token}`"))
                     .label("missing operator")
-                    .help(help)
-            })
+                    .help("write `*` between factors, `+` or `-` between terms")
+            });
         }
-        _ => None,
-    }
+        _ => return None,
+    };
+    Some(not_an_operator(f, f.at, token, help))
 }
 
 /// `o.. min z =e= …`
@@ -495,14 +408,9 @@ fn condition(f: &Failure<'_>, lead: usize, token: &str) -> Option<Diagnostic> {
         _ => return None,
     };
     let condition = f.text[dollar + 1..end].trim();
-    Some(
-        f.error("E0210", dollar, end - dollar)
-            .says("a condition with an operator stands in parentheses")
-            .help(format!(
-                "write `{}$({condition})`",
-                f.text[lead..dollar].trim_end()
-            )),
-    )
+    let head = f.text[lead..dollar].trim_end();
+    let d = f.error("E0210", dollar, end - dollar).says(IN_PARENTHESES);
+    Some(d.help(format!("write `{head}$({condition})`")))
 }
 
 /// Directives that are often written behind a statement.
@@ -519,119 +427,76 @@ fn operand(f: &Failure<'_>) -> Option<Diagnostic> {
     let enclosing = enclosing(f.text, f.at);
     let open = enclosing.map(|(at, _)| bytes[at]);
     let list = enclosing.is_some_and(|(at, word)| bytes[at] != b'(' && word.is_empty());
-    let say = |code, at, len, message: String, help: &str| {
-        Some(f.error(code, at, len).says(message).help(help))
-    };
-    match token {
+    let algebra = f.raw.class == Class::Algebra;
+    let next = f.token(f.at + 1);
+    let here = |code| f.error(code, f.at, 1);
+    Some(match token {
         "[" | "("
             if before.ends_with([']', ')'])
                 && before[..before.len() - 1].ends_with(|c: char| c.is_ascii_alphanumeric())
-                && f.raw.class == Class::Algebra =>
+                && algebra =>
         {
-            say(
-                "E0210",
-                f.at,
-                1,
-                "all indices stand in one pair of parentheses".into(),
-                "write `x(i,j)`; between factors stands `*`",
-            )
+            here("E0210")
+                .says("all indices stand in one pair of parentheses")
+                .help("write `x(i,j)`; between factors stands `*`")
         }
-        "@" => say(
-            "E0231",
-            f.at,
-            1,
-            "`@` cannot stand in an expression".into(),
-            "functions and sums have no mark: `sum(i, x(i))`, `exp(x)`; a formula that is used often can be a `$macro f(x) (…)`",
-        ),
-        "$" if DIRECTIVES
-            .iter()
-            .any(|d| f.token(f.at + 1).eq_ignore_ascii_case(d)) =>
-        {
-            say(
-                "E0210",
-                f.at,
-                1 + f.token(f.at + 1).len(),
-                "a directive begins its line".into(),
-                "write it on a line of its own, `$` in the first column",
-            )
-        }
+        "@" => here("E0231")
+            .says("`@` cannot stand in an expression")
+            .help("functions and sums have no mark: `sum(i, x(i))`, `exp(x)`; a formula that is used often can be a `$macro f(x) (…)`"),
+        "$" if DIRECTIVES.iter().any(|d| next.eq_ignore_ascii_case(d)) => f
+            .error("E0210", f.at, 1 + next.len())
+            .says("a directive begins its line")
+            .help("write it on a line of its own, `$` in the first column"),
         "$" if bytes.get(f.at + 1).is_some_and(u8::is_ascii_alphabetic)
             && !before.ends_with(|c: char| c.is_ascii_alphanumeric() || c == ')') =>
         {
-            say(
-                "E0231",
-                f.at,
-                1,
-                "a cell of a spreadsheet has no value here".into(),
-                "give the number a name: `scalar price / 2.5 /;`, and use the name",
-            )
+            here("E0231")
+                .says("a cell of a spreadsheet has no value here")
+                .help("give the number a name: `scalar price / 2.5 /;`, and use the name")
         }
-        "," if list => say(
-            "E0231",
-            f.at,
-            1,
-            "a list of numbers is no value".into(),
-            "numbers belong to labels: `set i / a, b, c /; parameter p(i) / a 1, b 2, c 3 /;`",
-        ),
+        "," if list => here("E0231")
+            .says("a list of numbers is no value")
+            .help("numbers belong to labels: `set i / a, b, c /; parameter p(i) / a 1, b 2, c 3 /;`"),
         "," if open.is_none()
-            && f.raw.class == Class::Algebra
-            && before
-                .bytes()
-                .all(|b| b.is_ascii_alphanumeric() || b == b'_') =>
+            && algebra
+            && before.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_') =>
         {
-            say(
-                "E0210",
-                f.at,
-                1,
-                "an assignment has one name on its left".into(),
-                "write `a = 1; b = 2;`",
-            )
+            here("E0210")
+                .says("an assignment has one name on its left")
+                .help("write `a = 1; b = 2;`")
         }
         ")" | "]" | "}" => {
             let (at, _) = enclosing?;
-            let closes = matches!((bytes[at], token), (b'(', ")") | (b'[', "]") | (b'{', "}"));
-            (!closes).then(|| {
-                f.error("E0202", f.at, 1)
-                    .says(format!("`{}` is closed by `{token}`", bytes[at] as char))
-                    .other(f.span(at, at + 1), "opened here")
-                    .help("the closing parenthesis is of the kind of the opening one")
-            })
-        }
-        "=" if is_relation(&bytes[f.at..]) && before.ends_with(['+', '-', '*', '/']) => say(
-            "E0212",
-            before.len() - 1,
-            1,
-            "an operand is missing behind this operator".into(),
-            "write what is added or multiplied, or take the operator out",
-        ),
-        "" if before.len() > 2 && is_relation(&bytes[before.len() - 3..]) => say(
-            "E0210",
-            before.len() - 3,
-            3,
-            "the right side of the equation is missing".into(),
-            "write an expression behind the relation, at least `0`",
-        ),
-        "" if f.raw.class == Class::Algebra && !before.contains('=') && !before.contains("..") => {
-            let lead = f.text.len() - f.text.trim_start().len();
-            if !before.contains('.') && behind_declaration(f, lead) {
-                return say(
-                    "E0210",
-                    lead,
-                    before.len() - lead,
-                    "a declaration begins with its keyword".into(),
-                    "the `;` before it has ended the declaration above: write `,` there, or repeat the keyword",
-                );
+            if matches!((bytes[at], token), (b'(', ")") | (b'[', "]") | (b'{', "}")) {
+                return None;
             }
-            say(
-                "E0210",
-                lead,
-                before.len() - lead,
-                "this is not a statement".into(),
-                "values are shown with `display x.l;`, assigned with `p = …;`, related in equations with `e.. … =e= …;`; models are solved with `solve m using lp minimizing z;`",
-            )
+            f.error("E0202", f.at, 1)
+                .says(format!("`{}` is closed by `{token}`", bytes[at] as char))
+                .other(f.span(at, at + 1), "opened here")
+                .help("the closing parenthesis is of the kind of the opening one")
         }
-        _ => None,
-    }
+        "=" if is_relation(&bytes[f.at..]) && before.ends_with(['+', '-', '*', '/']) => f
+            .error("E0212", before.len() - 1, 1)
+            .says("an operand is missing behind this operator")
+            .help("write what is added or multiplied, or take the operator out"),
+        "" if before.len() > 2 && is_relation(&bytes[before.len() - 3..]) => f
+            .error("E0210", before.len() - 3, 3)
+            .says("the right side of the equation is missing")
+            .help("write an expression behind the relation, at least `0`"),
+        "" if algebra && !before.contains('=') && !before.contains("..") => {
+            let lead = f.text.len() - f.text.trim_start().len();
+            let d = f.error("E0210", lead, before.len() - lead);
+            match !before.contains('.') && behind_declaration(f, lead) {
+                true => d
+                    .says("a declaration begins with its keyword")
+                    .help("the `;` before it has ended the declaration above: write `,` there, or repeat the keyword"),
+                false => d
+                    .says("this is not a statement")
+                    .help("values are shown with `display x.l;`, assigned with `p = …;`, related in equations with `e.. … =e= …;`; models are solved with `solve m using lp minimizing z;`"),
+            }
+        }
+        _ => return None,
+    })
 }
 
 /// Whether the statement above is a declaration.
@@ -669,11 +534,8 @@ fn control(f: &Failure<'_>) -> Option<Diagnostic> {
     let token = f.token(f.at);
     let head = &f.text[open + 1..f.at];
     let say = |message: &str, help: &str| {
-        Some(
-            f.error("E0236", f.at, token.len().max(1))
-                .says(message)
-                .help(help),
-        )
+        let d = f.error("E0236", f.at, token.len().max(1)).says(message);
+        Some(d.help(help))
     };
     let lower = f.text[..f.at].to_ascii_lowercase();
     let split = ["else if ", "elif ", "elsif "]
@@ -705,16 +567,11 @@ fn control(f: &Failure<'_>) -> Option<Diagnostic> {
         }
         // Further on the head is not to blame.
         _ if top_comma(head) && word != "for" => None,
+        "for" if head.contains(';') => None,
         "for"
-            if head.contains(';')
-                || top_level(head.as_bytes(), 0, |b| b.starts_with(b","))
-                    .is_some_and(|at| head[at..].contains(';')) =>
-        {
-            None
-        }
-        "for"
-            if !head.to_ascii_lowercase().contains(" to ")
-                && !head.to_ascii_lowercase().contains("downto") =>
+            if ![" to ", "downto"]
+                .iter()
+                .any(|w| lower[open + 1..].contains(w)) =>
         {
             say(
                 "`for` counts with a scalar from one number to another",
@@ -745,19 +602,14 @@ fn display(f: &Failure<'_>) -> Option<Diagnostic> {
     let lo = f.text.len() - rest.len();
     let len = rest.trim_end().len();
     if rest.starts_with('(') && closing(rest.as_bytes(), 0) == Some(len - 1) {
-        let inside = rest[1..len - 1].trim();
-        return Some(
-            f.error("E0328", lo, len)
-                .says("`display` takes its symbols without parentheses")
-                .help(format!("write `display {inside};`")),
-        );
+        let message = "`display` takes its symbols without parentheses";
+        let write = format!("write `display {};`", rest[1..len - 1].trim());
+        return Some(f.error("E0328", lo, len).says(message).help(write));
     }
     if rest.starts_with(['\'', '"']) && f.token(f.at) == "+" {
-        return Some(
-            f.error("E0328", f.at, 1)
-                .says("`display` takes texts and symbols, with commas between them")
-                .help("write `display 'total', z.l;`"),
-        );
+        let message = "`display` takes texts and symbols, with commas between them";
+        let write = "write `display 'total', z.l;`";
+        return Some(f.error("E0328", f.at, 1).says(message).help(write));
     }
     let expression = is_sum(&rest[..words::word_end(rest.as_bytes(), 0)])
         || matches!(f.token(f.at), "*" | "+" | "-" | "/" | "(")
@@ -781,31 +633,23 @@ fn solve(f: &Failure<'_>) -> Option<Diagnostic> {
         Some(f.error("E0218", f.at, token.len()).says(message).help(help))
     };
     if ProblemType::from_name(token).is_some() {
-        return said(
-            "`using` stands before the type of the model",
-            &format!("write `solve m using {token} minimizing z;`"),
-        );
+        let write = format!("write `solve m using {token} minimizing z;`");
+        return said("`using` stands before the type of the model", &write);
     }
-    if token == "," {
-        return said(
-            "a `solve` has no commas",
-            "write `solve m using lp minimizing z;`",
-        );
-    }
-    if token.eq_ignore_ascii_case("with") {
-        return said(
-            "the solver is chosen by an option",
-            "write `option lp = simplex;` before the `solve`",
-        );
-    }
-    if ["subject", "st", "such", "where"]
-        .iter()
-        .any(|w| token.eq_ignore_ascii_case(w))
-    {
-        return said(
-            "the equations are listed where the model is declared",
-            "write `model m / o, r /;` or `model m / all /;`",
-        );
+    match token.to_ascii_lowercase().as_str() {
+        "," => {
+            let write = "write `solve m using lp minimizing z;`";
+            return said("a `solve` has no commas", write);
+        }
+        "with" => {
+            let write = "write `option lp = simplex;` before the `solve`";
+            return said("the solver is chosen by an option", write);
+        }
+        "subject" | "st" | "such" | "where" => {
+            let message = "the equations are listed where the model is declared";
+            return said(message, "write `model m / o, r /;` or `model m / all /;`");
+        }
+        _ => {}
     }
     let at = ["minimi", "maximi"].iter().find_map(|w| lower.find(w))?;
     let from = words::word_end(f.text.as_bytes(), at);

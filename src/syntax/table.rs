@@ -524,32 +524,11 @@ mod tests {
     }
 
     #[test]
-    fn values_go_under_labels() {
-        let t = "\n          new-york  chicago\nseattle        2.5      1.7\nsan-diego               1.8\n";
-        assert_eq!(
-            cells(t),
-            [
-                "seattle|new-york=2.5",
-                "seattle|chicago=1.7",
-                "san-diego|chicago=1.8"
-            ]
-        );
-    }
-
-    #[test]
     fn continuation_and_tuples() {
         let t = "       aa.x    bb . y\nr1      1         2\n+      cc.(x,y)\nr1      - 1\n  +\n      c1*c3\n(r,s).k  7";
         assert_eq!(
             cells(t),
             ["r1|aa.x=1", "r1|bb.y=2", "r1|cc.(x,y)=-1", "!E0252"]
-        );
-    }
-
-    #[test]
-    fn numbers_may_begin_with_a_dot() {
-        assert_eq!(
-            cells("\n      c1   c2\nr1    .5   1\n2         .25\n"),
-            ["r1|c1=0.5", "r1|c2=1", "2|c2=0.25"]
         );
     }
 

@@ -82,6 +82,14 @@ pub(crate) fn word_end(bytes: &[u8], i: usize) -> usize {
     end
 }
 
+/// The first byte from `i` on that is no blank.
+pub(crate) fn behind_blanks(bytes: &[u8], mut i: usize) -> usize {
+    while i < bytes.len() && is_blank(bytes[i]) {
+        i += 1;
+    }
+    i
+}
+
 /// The word in lower case, if it is short enough to be a keyword.
 fn lower(word: &str, buffer: &mut [u8; 20]) -> Option<usize> {
     let b = word.as_bytes();
@@ -143,12 +151,8 @@ fn has_attribute(text: &str, end: usize) -> bool {
 
 /// The word after the blanks behind `end`.
 fn next_word(text: &str, end: usize) -> &str {
-    let bytes = text.as_bytes();
-    let mut i = end;
-    while i < bytes.len() && is_blank(bytes[i]) {
-        i += 1;
-    }
-    &text[i..word_end(bytes, i)]
+    let i = behind_blanks(text.as_bytes(), end);
+    &text[i..word_end(text.as_bytes(), i)]
 }
 
 /// Whether the word at `at..end` always begins a statement, and which kind.
@@ -221,31 +225,18 @@ fn first_class(text: &str, at: usize) -> (Class, usize) {
     if let Some((_, class)) = kind(word) {
         return (class, end);
     }
-    let second_end = |class| {
-        let bytes = text.as_bytes();
-        let mut i = end;
-        while i < bytes.len() && is_blank(bytes[i]) {
-            i += 1;
-        }
-        (class, word_end(bytes, i))
-    };
+    let second_end = |class| (class, word_end(bytes, behind_blanks(bytes, end)));
     match statement_word(text, at, end) {
         Some(Word::Declaration) if word == b"singleton" => return second_end(Class::Set),
         Some(Word::Declaration) => return second_end(Class::Variable),
         _ => {}
     }
-    match word {
-        b"figure" | b"draw" | b"break" | b"continue" | b"embeddedcode" | b"endembeddedcode" => {
-            (Class::Other, end)
-        }
-        _ if word.starts_with(b"execute")
-            || word.starts_with(b"put")
-            || word.starts_with(b"embeddedcode") =>
-        {
-            (Class::Other, end)
-        }
-        _ => (Class::Algebra, end),
-    }
+    let begins: [&[u8]; 3] = [b"execute", b"put", b"embeddedcode"];
+    let other = matches!(
+        word,
+        b"figure" | b"draw" | b"break" | b"continue" | b"endembeddedcode"
+    ) || begins.iter().any(|b| word.starts_with(b));
+    (if other { Class::Other } else { Class::Algebra }, end)
 }
 
 /// `figure`, whose block stands in braces.

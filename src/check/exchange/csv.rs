@@ -7,10 +7,21 @@ use crate::diag::Diagnostic;
 use ::csv::{ReaderBuilder, StringRecord};
 
 /// A file as rows.
+#[derive(Default)]
 struct Rows {
     header: StringRecord,
     rows: Vec<StringRecord>,
     lines: Vec<usize>,
+}
+
+impl Rows {
+    /// The column that is headed so, from the column `from` on.
+    fn column(&self, name: &str, from: usize) -> Option<usize> {
+        let mut headings = self.header.iter().enumerate().skip(from);
+        headings
+            .find(|(_, h)| h.eq_ignore_ascii_case(name))
+            .map(|(c, _)| c)
+    }
 }
 
 /// Name of the column that makes a file hold many symbols.
@@ -19,61 +30,43 @@ const SYMBOL: &str = "symbol";
 fn parse(text: &str) -> Result<Rows, String> {
     // Where the header has no comma, another delimiter separates.
     let first = text.lines().find(|l| !l.trim().is_empty()).unwrap_or("");
-    let delimiter = [b',', b';', b'\t']
-        .into_iter()
-        .find(|&d| first.as_bytes().contains(&d))
-        .unwrap_or(b',');
+    let mut delimiters = [b',', b';', b'\t'].into_iter();
+    let delimiter = delimiters.find(|d| first.as_bytes().contains(d));
     let mut reader = ReaderBuilder::new()
         .has_headers(false)
         .flexible(true)
         .trim(::csv::Trim::All)
-        .delimiter(delimiter)
+        .delimiter(delimiter.unwrap_or(b','))
         .from_reader(text.as_bytes());
-    let mut out = Rows {
-        header: StringRecord::new(),
-        rows: Vec::new(),
-        lines: Vec::new(),
-    };
-    let mut record = StringRecord::new();
-    let mut first = true;
-    loop {
-        match reader.read_record(&mut record) {
-            Ok(false) => return Ok(out),
-            Ok(true) if first => {
-                out.header = record.clone();
-                first = false;
-            }
-            Ok(true) => {
-                let line = record.position().map_or(0, |p| p.line() as usize);
-                if !record.iter().all(str::is_empty) {
-                    out.rows.push(record.clone());
-                    out.lines.push(line);
-                }
-            }
-            Err(e) => return Err(e.to_string()),
+    let mut records = reader.records();
+    let mut out = Rows::default();
+    if let Some(header) = records.next() {
+        out.header = header.map_err(|e| e.to_string())?;
+    }
+    for record in records {
+        let record = record.map_err(|e| e.to_string())?;
+        if !record.iter().all(str::is_empty) {
+            out.lines
+                .push(record.position().map_or(0, |p| p.line() as usize));
+            out.rows.push(record);
         }
     }
+    Ok(out)
 }
 
-fn is_long(header: &StringRecord) -> bool {
-    header
-        .get(0)
-        .is_some_and(|h| h.eq_ignore_ascii_case(SYMBOL))
+fn is_long(rows: &Rows) -> bool {
+    rows.column(SYMBOL, 0) == Some(0)
 }
 
 /// The symbols that a file holds, each once, in their order; none for a file of one symbol.
 pub(super) fn names(text: &str) -> Vec<String> {
     let mut out: Vec<String> = Vec::new();
-    if let Ok(rows) = parse(text)
-        && is_long(&rows.header)
-    {
-        for r in &rows.rows {
-            let name = r.get(0).unwrap_or("").split('.').next().unwrap_or("");
-            if out.last().is_none_or(|l| l != name)
-                && !out.iter().any(|o| o.eq_ignore_ascii_case(name))
-            {
-                out.push(name.to_string());
-            }
+    let rows = parse(text).unwrap_or_default();
+    for r in rows.rows.iter().filter(|_| is_long(&rows)) {
+        let name = r.get(0).unwrap_or("").split('.').next().unwrap_or("");
+        let is_new = |o: &String| !o.eq_ignore_ascii_case(name);
+        if out.last().is_none_or(is_new) && out.iter().all(is_new) {
+            out.push(name.to_string());
         }
     }
     out
@@ -94,18 +87,12 @@ pub(super) fn read(
                 .help(help),
         )
     };
-    let rows = match (parse(text), items.first()) {
-        (_, None) => return Ok(()),
-        (Err(e), Some(w)) => {
-            return Err(fail(
-                w,
-                e,
-                "a CSV file has a header line, and the same columns in every line",
-            ));
-        }
-        (Ok(rows), _) => rows,
+    let Some(first) = items.first() else {
+        return Ok(());
     };
-    if is_long(&rows.header) {
+    let columns = "a CSV file has a header line, and the same columns in every line";
+    let rows = parse(text).map_err(|e| fail(first, e, columns))?;
+    if is_long(&rows) {
         let there = names(text);
         for w in items {
             if !there.iter().any(|n| n.eq_ignore_ascii_case(&w.name)) {
@@ -122,38 +109,31 @@ pub(super) fn read(
             "begin the header with a column `symbol`, or load every symbol from its own file",
         ));
     }
-    single(file, &rows, &items[0], loading)
+    single(file, &rows, first, loading)
 }
 
 fn short(file: &str, line: usize, w: &Wanted, have: usize, need: usize) -> Box<Diagnostic> {
-    Box::new(
-        Diagnostic::execution("E0478", w.span)
-            .says(format!(
-                "{file}:{line}: {have} columns, but `{}` needs {need}",
-                w.name
-            ))
-            .label("nothing was loaded")
-            .help("the columns are the labels, in the order of the indices, then the value"),
-    )
+    let name = &w.name;
+    let d = Diagnostic::execution("E0478", w.span)
+        .says(format!(
+            "{file}:{line}: {have} columns, but `{name}` needs {need}"
+        ))
+        .label("nothing was loaded");
+    Box::new(d.help("the columns are the labels, in the order of the indices, then the value"))
 }
 
 /// Many symbols: `symbol,label1,label2,value,text`.
 fn long(file: &str, rows: &Rows, w: &Wanted, loading: &mut Loading<'_>) -> Outcome<()> {
     let symbol = loading.symbols.rooted(w.symbol).clone();
     let dim = symbol.dim();
-    let value_column = rows
-        .header
-        .iter()
-        .position(|h| h.eq_ignore_ascii_case("value"));
-    let text_column = rows
-        .header
-        .iter()
-        .position(|h| h.eq_ignore_ascii_case("text"));
+    let value_column = rows.column("value", 0);
+    let text_column = rows.column("text", 0);
     // Per attribute of variables and equations, in the order in which they appear.
     let mut parts: Vec<(u32, Records)> = Vec::new();
     let is_record = symbol.has_attributes();
     for (row, &line) in rows.rows.iter().zip(&rows.lines) {
-        let mut name = row.get(0).unwrap_or("").splitn(2, '.');
+        let written = row.get(0).unwrap_or("");
+        let mut name = written.splitn(2, '.');
         if !name.next().is_some_and(|n| n.eq_ignore_ascii_case(&w.name)) {
             continue;
         }
@@ -165,10 +145,7 @@ fn long(file: &str, rows: &Rows, w: &Wanted, loading: &mut Loading<'_>) -> Outco
         };
         let Some(offset) = offset else {
             return Diagnostic::execution("E0478", w.span)
-                .says(format!(
-                    "{file}:{line}: `{}` is not known",
-                    row.get(0).unwrap_or("")
-                ))
+                .says(format!("{file}:{line}: `{written}` is not known"))
                 .help("attributes are l, m, lo, up and scale, of variables and equations")
                 .refuse();
         };
@@ -182,29 +159,17 @@ fn long(file: &str, rows: &Rows, w: &Wanted, loading: &mut Loading<'_>) -> Outco
                 &mut parts.last_mut().expect("just pushed").1
             }
         };
-        for p in 0..dim {
-            let l = loading.label(&row[p + 1]);
-            part.keys.push(l);
-        }
+        part.keys
+            .extend((0..dim).map(|p| loading.label(&row[p + 1])));
         part.places.push(line);
         let at = value_column.unwrap_or(rows.header.len() - 1);
-        match row.get(at) {
-            Some(v) if !v.is_empty() && (!symbol.is_set() || at > dim) => {
-                let v = if symbol.is_set() {
-                    1.0
-                } else {
-                    loading.value(v, file, line, w)?
-                };
-                part.values.push(v);
-            }
-            _ if symbol.is_set() => part.values.push(1.0),
+        part.values.push(match row.get(at) {
+            _ if symbol.is_set() => 1.0,
+            Some(v) if !v.is_empty() => loading.value(v, file, line, w)?,
             _ => return Err(short(file, line, w, row.len(), at + 1)),
-        }
-        if symbol.is_set()
-            && let Some(t) = text_column
-                .and_then(|c| row.get(c))
-                .filter(|t| !t.is_empty())
-        {
+        });
+        let text = text_column.and_then(|c| row.get(c));
+        if let Some(t) = text.filter(|t| symbol.is_set() && !t.is_empty()) {
             let key = part.keys[part.keys.len() - dim..].into();
             part.texts.insert(key, t.into());
         }
@@ -224,13 +189,9 @@ fn is_table(header: &StringRecord, symbol: &Symbol, loading: &Loading<'_>) -> bo
     match symbol.domain[dim - 1] {
         DomainPosition::Set(d) => {
             let table = loading.store.table(loading.symbols.get(d).table);
-            header.iter().skip(dim - 1).all(|h| {
-                loading
-                    .store
-                    .universe
-                    .get(h)
-                    .is_some_and(|l| table.find(&[l]).is_some())
-            })
+            let known = |h| loading.store.universe.get(h);
+            let belongs = |h| known(h).is_some_and(|l| table.find(&[l]).is_some());
+            header.iter().skip(dim - 1).all(belongs)
         }
         _ => header.len() != dim + 1,
     }
@@ -244,12 +205,8 @@ fn single(file: &str, rows: &Rows, w: &Wanted, loading: &mut Loading<'_>) -> Out
     if is_table(&rows.header, &symbol, loading)
         && matches!(symbol.kind, SymbolKind::Parameter { .. })
     {
-        let columns: Vec<u32> = rows
-            .header
-            .iter()
-            .skip(dim - 1)
-            .map(|h| loading.label(h))
-            .collect();
+        let headings = rows.header.iter().skip(dim - 1);
+        let columns: Vec<u32> = headings.map(|h| loading.label(h)).collect();
         for (row, &line) in rows.rows.iter().zip(&rows.lines) {
             if row.len() < dim {
                 return Err(short(file, line, w, row.len(), rows.header.len()));
@@ -271,37 +228,22 @@ fn single(file: &str, rows: &Rows, w: &Wanted, loading: &mut Loading<'_>) -> Out
     // Columns behind the labels, and the tables that they fill.
     let columns: Vec<(usize, u32)> = match symbol.kind {
         SymbolKind::Variable(_) | SymbolKind::Equation(_) => {
-            let named: Vec<_> = rows
-                .header
-                .iter()
-                .enumerate()
-                .skip(dim)
-                .filter_map(|(c, h)| Some((c, attribute_offset(h)?)))
-                .collect();
-            if named.is_empty() {
-                vec![(dim, attribute::L)]
-            } else {
-                named
+            let headings = rows.header.iter().enumerate().skip(dim);
+            let named = headings.filter_map(|(c, h)| Some((c, attribute_offset(h)?)));
+            let named: Vec<_> = named.collect();
+            match named.is_empty() {
+                true => vec![(dim, attribute::L)],
+                false => named,
             }
         }
-        SymbolKind::Parameter { .. } => {
-            let value = rows
-                .header
-                .iter()
-                .skip(dim)
-                .position(|h| h.eq_ignore_ascii_case("value"));
-            vec![(dim + value.unwrap_or(0), 0)]
-        }
+        SymbolKind::Parameter { .. } => vec![(rows.column("value", dim).unwrap_or(dim), 0)],
         _ => vec![(dim, 0)],
     };
     for (row, &line) in rows.rows.iter().zip(&rows.lines) {
         if row.len() < dim {
             return Err(short(file, line, w, row.len(), dim));
         }
-        for p in 0..dim {
-            let l = loading.label(&row[p]);
-            r.keys.push(l);
-        }
+        r.keys.extend((0..dim).map(|p| loading.label(&row[p])));
         r.places.push(line);
         for &(c, offset) in &columns {
             let cell = row.get(c).unwrap_or("");
@@ -316,8 +258,8 @@ fn single(file: &str, rows: &Rows, w: &Wanted, loading: &mut Loading<'_>) -> Out
             } else if matches!(symbol.kind, SymbolKind::Parameter { .. }) {
                 return Err(short(file, line, w, row.len(), c + 1));
             } else {
-                r.values
-                    .push(loading.store.table(symbol.table + offset).default_value());
+                let table = loading.store.table(symbol.table + offset);
+                r.values.push(table.default_value());
             }
         }
     }

@@ -21,12 +21,9 @@ fn open<'a>(file: &str, bytes: &'a [u8], at: Span) -> Outcome<File<'a>> {
 }
 
 fn damaged(file: &str, at: Span, e: &Error) -> Box<Diagnostic> {
-    let message = format!("the GDX file `{file}` cannot be read: {e}");
-    Box::new(
-        Diagnostic::execution("E0478", at)
-            .says(message)
-            .label("nothing was loaded"),
-    )
+    let d = Diagnostic::execution("E0478", at);
+    let d = d.says(format!("the GDX file `{file}` cannot be read: {e}"));
+    Box::new(d.label("nothing was loaded"))
 }
 
 /// Whether a symbol of a file can be loaded into one of the program.
@@ -168,30 +165,25 @@ impl Reader<'_> {
                 let what = format!("position {} of {dim} makes a set of one index", p + 1);
                 return self.wrong(w, &what, "");
             }
-            loading.text(
-                w.symbol,
-                &format!("Domain loaded from {} position {}", w.name, p + 1),
-            );
+            let text = format!("Domain loaded from {} position {}", w.name, p + 1);
+            loading.text(w.symbol, &text);
             return self.projection(w, records()?, dim, p, loading);
         }
         if w.part == Part::Whole {
             loading.text(w.symbol, &inside.text);
         }
         let kind = inside.kind.name();
+        let (own, own_dim) = (&symbol.name, symbol.dim());
         let other_dim = || {
-            let (inside, own) = (format!("it has {dim} index positions"), symbol.dim());
-            let what = format!("{inside} in the file; `{}` has {own}", symbol.name);
-            self.wrong(w, &what, "")
+            let inside = format!("it has {dim} index positions in the file");
+            self.wrong(w, &format!("{inside}; `{own}` has {own_dim}"), "")
         };
         if w.into.is_some() {
-            let part = match (inside.kind, w.part) {
-                (Kind::Parameter, Part::Whole) => Some(Part::Whole),
-                (Kind::Variable(_) | Kind::Equation(_), Part::Whole) => {
-                    Some(Part::Attribute(attribute::L))
-                }
-                (Kind::Variable(_) | Kind::Equation(_), Part::Attribute(a)) if a < 5 => {
-                    Some(w.part)
-                }
+            let is_record = matches!(inside.kind, Kind::Variable(_) | Kind::Equation(_));
+            let part = match w.part {
+                Part::Whole if inside.kind == Kind::Parameter => Some(Part::Whole),
+                Part::Whole if is_record => Some(Part::Attribute(attribute::L)),
+                Part::Attribute(a) if is_record && a < 5 => Some(w.part),
                 _ => None,
             };
             return match part.filter(|_| symbol.has_attributes()) {
@@ -204,31 +196,24 @@ impl Reader<'_> {
             };
         }
         match w.part {
-            Part::LastPosition | Part::FirstPosition => self.wrong(
-                w,
-                &format!("no index of this {kind} has the domain `{}`", symbol.name),
-                &format!("say which one: `{} < {}.dim1`", symbol.name, w.name),
-            ),
+            Part::LastPosition | Part::FirstPosition => {
+                let what = format!("no index of this {kind} has the domain `{own}`");
+                let help = format!("say which one: `{own} < {}.dim1`", w.name);
+                self.wrong(w, &what, &help)
+            }
             Part::Attribute(a)
                 if inside.kind.width() < 5
                     || a >= 5
                     || symbol.has_attributes()
                     || symbol.is_set() =>
             {
-                self.wrong(
-                    w,
-                    "an attribute is read from a variable or equation, into a parameter",
-                    "",
-                )
+                let what = "an attribute is read from a variable or equation, into a parameter";
+                self.wrong(w, what, "")
             }
-            Part::Whole if !same_kind(inside.kind, &symbol.kind) => self.wrong(
-                w,
-                &format!(
-                    "it is a {kind} in the file; `{}` is a {}",
-                    symbol.name,
-                    symbol.kind_name()
-                ),
-                match (inside.kind.width(), &symbol.kind) {
+            Part::Whole if !same_kind(inside.kind, &symbol.kind) => {
+                let own_kind = symbol.kind_name();
+                let what = format!("it is a {kind} in the file; `{own}` is a {own_kind}");
+                let help = match (inside.kind.width(), &symbol.kind) {
                     (5, SymbolKind::Parameter { .. }) => {
                         "name the attribute: `p = x.l`, `.m`, `.lo`, `.up` or `.scale`"
                     }
@@ -236,8 +221,9 @@ impl Reader<'_> {
                         "the labels of an index position are read by `i < p.dim1`"
                     }
                     _ => "",
-                },
-            ),
+                };
+                self.wrong(w, &what, help)
+            }
             _ if dim != symbol.dim() => other_dim(),
             _ if symbol.is_set() => self.set(w, records()?, dim, loading),
             part => self.values(w, records()?, inside, part, loading),
@@ -313,14 +299,13 @@ impl Reader<'_> {
             });
             let (file, name) = (self.file, &w.name);
             let total = taken.len() + count;
-            let message =
-                format!("{file}: {count} of the {total} records of `{name}` are left out");
-            loading.warn(
-                Diagnostic::warning("E0479", w.span)
-                    .says(message)
-                    .label(format!("such as one with `{label}`, {why}"))
-                    .help("`$loadDC` and `execute_loadDC` make it an error"),
-            );
+            let d = Diagnostic::warning("E0479", w.span)
+                .says(format!(
+                    "{file}: {count} of the {total} records of `{name}` are left out"
+                ))
+                .label(format!("such as one with `{label}`, {why}"))
+                .help("`$loadDC` and `execute_loadDC` make it an error");
+            loading.warn(d);
         }
         (out, taken)
     }
@@ -376,15 +361,12 @@ impl Reader<'_> {
             Part::Attribute(a) => a as usize..a as usize + 1,
             _ => 0..width,
         };
-        let acronyms: Vec<f64> = self
-            .gdx
-            .acronyms()
-            .map(|name| {
-                let known = &loading.store.acronyms;
-                let found = known.iter().position(|a| a.eq_ignore_ascii_case(name));
-                found.map_or(UNDF, |n| acronym(n as u32))
-            })
-            .collect();
+        let known = &loading.store.acronyms;
+        let acronyms = self.gdx.acronyms().map(|name| {
+            let found = known.iter().position(|a| a.eq_ignore_ascii_case(name));
+            found.map_or(UNDF, |n| acronym(n as u32))
+        });
+        let acronyms: Vec<f64> = acronyms.collect();
         for r in taken {
             for v in &records.values[r * width..][columns.clone()] {
                 out.values.push(match *v {
@@ -396,22 +378,18 @@ impl Reader<'_> {
                 });
             }
         }
-        let unknown = self
-            .gdx
-            .acronyms()
-            .zip(&acronyms)
-            .find(|a| a.1.is_nan() && as_acronym(*a.1).is_none());
-        if let (Some((name, _)), true) = (
-            unknown,
-            out.values.iter().any(|v| v.to_bits() == UNDF.to_bits()),
-        ) {
-            let message = format!("{}: the acronym `{name}` is not declared", self.file);
-            loading.warn(
-                Diagnostic::warning("E0478", w.span)
-                    .says(message)
-                    .label("its records have the value UNDF")
-                    .help(format!("write `acronym {name};` before")),
-            );
+        let mut named = self.gdx.acronyms().zip(&acronyms);
+        let unknown = named.find(|a| a.1.is_nan() && as_acronym(*a.1).is_none());
+        let undefined = out.values.iter().any(|v| v.to_bits() == UNDF.to_bits());
+        if let Some((name, _)) = unknown.filter(|_| undefined) {
+            let d = Diagnostic::warning("E0478", w.span)
+                .says(format!(
+                    "{}: the acronym `{name}` is not declared",
+                    self.file
+                ))
+                .label("its records have the value UNDF")
+                .help(format!("write `acronym {name};` before"));
+            loading.warn(d);
         }
         let columns = match (w.into, part) {
             (Some(a), _) => vec![a],
@@ -443,13 +421,11 @@ pub(super) fn write(
         let mut before = items.iter().take_while(|o| o.symbol != w.symbol);
         root != w.symbol && (root == UNIVERSE || before.any(|o| o.symbol == root))
     };
-    let keys: Vec<Vec<Vec<Label>>> = items
-        .iter()
-        .map(|w| match is_alias(w) {
-            true => Vec::new(),
-            false => tables::keys(store, data(w)),
-        })
-        .collect();
+    let keys = items.iter().map(|w| match is_alias(w) {
+        true => Vec::new(),
+        false => tables::keys(store, data(w)),
+    });
+    let keys: Vec<Vec<Vec<Label>>> = keys.collect();
     let mut used: Vec<Label> = keys.iter().flatten().flatten().copied().collect();
     used.sort_unstable();
     used.dedup();
@@ -536,10 +512,8 @@ fn kind(symbol: &Symbol, equations: &[EquationDef]) -> Kind {
             VariableKind::SemiInteger => 9,
         }),
         SymbolKind::Equation(definition) => {
-            let relation = definition
-                .and_then(|d| equations.get(d))
-                .map(|e| e.relation);
-            Kind::Equation(match relation {
+            let equation = definition.and_then(|d| equations.get(d));
+            Kind::Equation(match equation.map(|e| e.relation) {
                 Some(Relation::Equal) => 53,
                 Some(Relation::Greater) => 54,
                 Some(Relation::Less) => 55,

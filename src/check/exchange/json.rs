@@ -87,10 +87,9 @@ impl Reader<'_> {
             SymbolKind::Variable(_) | SymbolKind::Equation(_) => {
                 let mut found = Vec::new();
                 attributes(v, &mut found);
-                if found.is_empty() {
-                    vec![attribute::L]
-                } else {
-                    found
+                match found.is_empty() {
+                    true => vec![attribute::L],
+                    false => found,
                 }
             }
             _ => vec![0],
@@ -168,10 +167,8 @@ impl Reader<'_> {
             return self.values(v, place, loading);
         }
         let Value::Object(m) = v else {
-            return self.wrong(&format!(
-                "{} levels of objects are expected",
-                self.symbol.dim()
-            ));
+            let levels = self.symbol.dim();
+            return self.wrong(&format!("{levels} levels of objects are expected"));
         };
         for (label, inner) in m {
             let l = loading.label(label);
@@ -204,27 +201,21 @@ impl Reader<'_> {
         for &offset in &columns {
             let member = match v {
                 Value::Object(m) => {
-                    let hit = m.iter().find(|(k, _)| attribute_offset(k) == Some(offset));
-                    match hit {
-                        Some((_, x)) => x,
-                        None => {
-                            self.records.values.push(
-                                loading
-                                    .store
-                                    .table(self.symbol.table + offset)
-                                    .default_value(),
-                            );
-                            continue;
-                        }
-                    }
+                    let mut members = m.iter();
+                    let hit = members.find(|(k, _)| attribute_offset(k) == Some(offset));
+                    hit.map(|(_, x)| x)
                 }
-                other => other,
+                other => Some(other),
             };
             let x = match member {
-                Value::Number(n) => n.as_f64(),
-                Value::String(t) => Some(loading.value(t, self.file, place, self.w)?),
-                Value::Bool(b) => Some(f64::from(u8::from(*b))),
-                _ => None,
+                None => {
+                    let table = loading.store.table(self.symbol.table + offset);
+                    Some(table.default_value())
+                }
+                Some(Value::Number(n)) => n.as_f64(),
+                Some(Value::String(t)) => Some(loading.value(t, self.file, place, self.w)?),
+                Some(Value::Bool(b)) => Some(f64::from(u8::from(*b))),
+                Some(_) => None,
             };
             match x {
                 Some(x) => self.records.values.push(x),

@@ -45,6 +45,19 @@ pub struct Wanted {
     pub into: Option<u32>,
 }
 
+impl Wanted {
+    /// All of a symbol.
+    pub fn whole(symbol: SymbolId, name: &str, span: Span) -> Self {
+        Self {
+            symbol,
+            name: name.to_string(),
+            span,
+            part: Part::Whole,
+            into: None,
+        }
+    }
+}
+
 /// What of a symbol in a file is read.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Part {
@@ -93,32 +106,24 @@ fn attribute_offset(name: &str) -> Option<u32> {
 pub fn wanted(symbols: &Symbols, items: &[ExchangeItem]) -> Outcome<Vec<Wanted>> {
     let mut out = Vec::new();
     for item in items {
-        let ExchangeItem { name, other, .. } = item;
-        let Some(symbol) = symbols.find(&name.name) else {
-            return Diagnostic::execution("E0475", name.span)
-                .says(format!("`{}` is not known", name.name))
-                .refuse();
+        let Ident { name, span } = &item.name;
+        let refused = Diagnostic::execution("E0475", *span);
+        let Some(symbol) = symbols.find(name) else {
+            return refused.says(format!("`{name}` is not known")).refuse();
         };
-        if !has_data(&symbols.get(symbol).kind) {
-            let kind = symbols.get(symbol).a_kind();
-            return Diagnostic::execution("E0475", name.span)
-                .says(format!(
-                    "`{}` is {kind}; it has no data to exchange",
-                    name.name
-                ))
+        let own = symbols.get(symbol);
+        if !has_data(&own.kind) {
+            let kind = own.a_kind();
+            return refused
+                .says(format!("`{name}` is {kind}; it has no data to exchange"))
                 .label("a set, parameter, variable or equation is expected")
                 .refuse();
         }
-        let shown = other.as_ref().map_or_else(
-            || symbols.get(symbol).name.to_string(),
-            |o| o.name.to_string(),
-        );
+        let shown = item.other.as_ref().map_or(&own.name, |o| &o.name);
         out.push(Wanted {
-            symbol,
-            name: shown,
-            span: name.span,
             part: part_of(item)?,
             into: into_of(item)?,
+            ..Wanted::whole(symbol, shown, *span)
         });
     }
     Ok(out)
@@ -203,20 +208,12 @@ fn declared_in(
         let Some(symbol) = symbols.find(n) else {
             continue;
         };
-        let kind = &symbols.get(symbol).kind;
-        let fits = if point {
-            matches!(kind, SymbolKind::Variable(_) | SymbolKind::Equation(_))
-        } else {
-            has_data(kind)
+        let fits = match point {
+            true => symbols.get(symbol).has_attributes(),
+            false => has_data(&symbols.get(symbol).kind),
         };
         if fits && !out.iter().any(|w| w.symbol == symbol) {
-            out.push(Wanted {
-                symbol,
-                name: n.clone(),
-                span,
-                part: Part::Whole,
-                into: None,
-            });
+            out.push(Wanted::whole(symbol, n, span));
         }
     }
     Ok(out)
@@ -251,12 +248,9 @@ pub fn load(
 ) -> Outcome<Vec<Diagnostic>> {
     let kind = format_of(request.file);
     let file = full_name(request.file);
-    if kind != Kind::Gdx
-        && let Some(w) = request
-            .items
-            .iter()
-            .find(|w| w.part != Part::Whole || w.into.is_some())
-    {
+    let is_part = |w: &&Wanted| w.part != Part::Whole || w.into.is_some();
+    let part = request.items.iter().find(is_part);
+    if let Some(w) = part.filter(|_| kind != Kind::Gdx) {
         return Diagnostic::execution("E0475", w.span)
             .says(format!(
                 "a part of `{}` is read from GDX files only",
@@ -374,14 +368,8 @@ fn everything(symbols: &Symbols, kind: Kind, span: Span) -> Vec<Wanted> {
     let aliases = kind == Kind::Gdx;
     let listed = |k: &SymbolKind| has_data(k) && (aliases || !matches!(k, SymbolKind::Alias(_)));
     let all = symbols.iter().skip(1).filter(|(_, s)| listed(&s.kind));
-    all.map(|(symbol, s)| Wanted {
-        symbol,
-        name: s.name.to_string(),
-        span,
-        part: Part::Whole,
-        into: None,
-    })
-    .collect()
+    all.map(|(symbol, s)| Wanted::whole(symbol, &s.name, span))
+        .collect()
 }
 
 impl Compiler {
@@ -473,9 +461,8 @@ impl Compiler {
             for (n, w) in items.iter().enumerate() {
                 let root = self.symbols.root(w.symbol);
                 let symbol = self.symbols.get(root);
-                let again = items[..n]
-                    .iter()
-                    .any(|v| self.symbols.root(v.symbol) == root);
+                let is_same = |v: &Wanted| self.symbols.root(v.symbol) == root;
+                let again = items[..n].iter().any(is_same);
                 let filled = symbol.has_data || symbol.assigned && !self.not_loaded.contains(&root);
                 if again || filled {
                     return Err(Box::new(second_data(&symbol.name, w.span, symbol.declared)));
@@ -532,14 +519,8 @@ impl Compiler {
             return Ok(());
         };
         self.asked_for_data.set(true);
-        let files = unload(
-            &self.symbols,
-            &mut self.store,
-            &self.equations,
-            &file,
-            &items,
-            span,
-        )?;
+        let store = &mut self.store;
+        let files = unload(&self.symbols, store, &self.equations, &file, &items, span)?;
         for (name, bytes) in files {
             parser.remember(&name, bytes);
         }
@@ -583,9 +564,8 @@ fn parse_value(text: &str, acronyms: &[Box<str>]) -> Option<f64> {
         "yes" | "true" => 1.0,
         "no" | "false" => 0.0,
         lower => {
-            let n = acronyms
-                .iter()
-                .position(|a| a.eq_ignore_ascii_case(lower))?;
+            let mut names = acronyms.iter();
+            let n = names.position(|a| a.eq_ignore_ascii_case(lower))?;
             crate::data::value::acronym(n as u32)
         }
     })

@@ -61,24 +61,17 @@ impl Explained<'_> {
             for alike in alike {
                 let s = alike[0];
                 let names = alike.iter().map(|s| self.name(blocks, s.at));
-                let (names, verb, each) = match alike.len() {
-                    1 => (self.name(blocks, s.at), s.verb[0], ": "),
-                    n if n == whole && n > 2 => (
-                        format!("All {n} {kind}s of {name}"),
-                        s.verb[1],
-                        "; for each, ",
-                    ),
-                    _ => (
-                        listed(&names.collect::<Vec<_>>(), MAX_ALIKE),
-                        s.verb[1],
-                        "; for each, ",
-                    ),
+                let names = match alike.len() {
+                    n if n == whole && n > 2 => format!("All {n} {kind}s of {name}"),
+                    _ => listed(&names.collect::<Vec<_>>(), MAX_ALIKE),
                 };
-                let each = if s.words.is_empty() { "" } else { each };
-                out.push((
-                    format!("{names} {verb}{}{each}{}.", s.place, s.words),
-                    alike.len(),
-                ));
+                let many = usize::from(alike.len() > 1);
+                let each = match s.words.is_empty() {
+                    true => "",
+                    false => [": ", "; for each, "][many],
+                };
+                let sentence = format!("{names} {}{}{each}{}.", s.verb[many], s.place, s.words);
+                out.push((sentence, alike.len()));
             }
         }
         let more: usize = out.iter().skip(MAX_NAMES).map(|s| s.1).sum();
@@ -103,21 +96,18 @@ pub(super) fn worth(
     linear: bool,
 ) -> (String, f64, String) {
     let Some(r) = range else {
-        return match linear {
+        let by = short(marginal);
+        let (lead, words) = match linear {
             true => (
                 "their marginals are".into(),
-                marginal,
-                format!("its marginal is {}", short(marginal)),
+                format!("its marginal is {by}"),
             ),
             false => (
                 format!("a little more on a right side changes {objective}, per unit, by"),
-                marginal,
-                format!(
-                    "a little more on its right side changes {objective} by {} per unit",
-                    short(marginal)
-                ),
+                format!("a little more on its right side changes {objective} by {by} per unit"),
             ),
         };
+        return (lead, marginal, words);
     };
     let [below, above] = r.price;
     let [from, to] = r.interval.map(short);
@@ -131,6 +121,10 @@ pub(super) fn worth(
     let many = format!(" on a right side changes {objective} by");
     let [more, less] = ["a unit more", "a unit less"];
     match r.price.map(f64::is_finite) {
+        [false, false] => {
+            let words = "with any other right side nothing is feasible";
+            (String::new(), 0.0, words.into())
+        }
         [true, true] if below == 0.0 && above == 0.0 => {
             let words = "changing its right side a little changes nothing";
             (String::new(), 0.0, words.into())
@@ -151,25 +145,17 @@ pub(super) fn worth(
             let words = "less on its right side changes nothing, with more nothing is feasible";
             (String::new(), 0.0, words.into())
         }
-        [false, true] => (
-            format!("with less on a right side nothing is feasible, {more}{many}"),
-            above,
-            format!(
-                "{more}{on}{}{limits}, with less nothing is feasible",
-                short(above)
-            ),
-        ),
-        [true, false] => (
-            format!("with more on a right side nothing is feasible, {less}{many}"),
-            -below,
-            format!(
-                "{less}{on}{}{limits}, with more nothing is feasible",
-                short(-below)
-            ),
-        ),
-        [false, false] => {
-            let words = "with any other right side nothing is feasible";
-            (String::new(), 0.0, words.into())
+        [one, _] => {
+            let (unit, other, by) = match one {
+                false => (more, "less", above),
+                true => (less, "more", -below),
+            };
+            let lead = format!("with {other} on a right side nothing is feasible, {unit}{many}");
+            let words = format!(
+                "{unit}{on}{}{limits}, with {other} nothing is feasible",
+                short(by)
+            );
+            (lead, by, words)
         }
     }
 }

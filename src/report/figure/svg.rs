@@ -7,7 +7,7 @@ use std::fmt::Write;
 use super::layout::{Axis, extent, visible};
 use super::{Anchor, Element, Scene, Shape, Style};
 use crate::color::{self, Paint};
-use frame::{Margins, legend_names, legend_rows, plot_height, ranges, widen};
+use frame::{Margins, legend_names, legend_rows, plot_height, ranges, widen, words};
 
 /// Ink of axes, texts and lines that have no colour of their own.
 const INK: &str = "#2b3440";
@@ -53,10 +53,8 @@ fn escape(text: &str) -> String {
 
 /// The range of the numbers that colours stand for.
 fn scale_range(scene: &Scene) -> Option<[f64; 2]> {
-    let paints = scene
-        .elements
-        .iter()
-        .flat_map(|e| [&e.style.fill, &e.style.stroke]);
+    let styles = scene.elements.iter().map(|e| &e.style);
+    let paints = styles.flat_map(|s| [&s.fill, &s.stroke]);
     let values = paints.filter_map(|p| match p {
         Some(Paint::Value(v)) if v.is_finite() => Some(*v),
         _ => None,
@@ -166,11 +164,9 @@ fn small_multiples(scene: &Scene, panels: &[&str]) -> String {
 
 /// The height that a picture states in its first line.
 fn height_of(svg: &str) -> f64 {
-    let text = svg
-        .split("height=\"")
-        .nth(1)
-        .and_then(|t| t.split('"').next());
-    text.and_then(|t| t.parse().ok()).unwrap_or(0.0)
+    let text = svg.split("height=\"").nth(1).unwrap_or_default();
+    let text = text.split('"').next().unwrap_or_default();
+    text.parse().unwrap_or(0.0)
 }
 
 fn picture_width(scene: &Scene, usual: f64) -> f64 {
@@ -194,12 +190,8 @@ fn legend_height(rows: &[Vec<(usize, f64)>]) -> f64 {
 
 /// One plot with what surrounds it; the legend only if asked for.
 fn plot(scene: &Scene, common: Common<'_>, with_legend: bool) -> String {
-    let chart = |e: &Element| {
-        matches!(
-            e.shape,
-            Shape::Line(_) | Shape::Bars(_) | Shape::Whiskers(_)
-        )
-    };
+    use Shape::{Bars, Line, Whiskers};
+    let chart = |e: &Element| matches!(e.shape, Line(_) | Bars(_) | Whiskers(_));
     let has_chart = scene.elements.iter().any(chart);
     let axes = scene.axes.unwrap_or(has_chart);
     let equal = scene.equal.unwrap_or(!has_chart) && !scene.x_log && !scene.y_log;
@@ -248,19 +240,14 @@ fn plot(scene: &Scene, common: Common<'_>, with_legend: bool) -> String {
     if axes {
         d.axes(m.rotate);
     }
-    let is_cut = scene
-        .x_limits
-        .iter()
-        .chain(&scene.y_limits)
-        .any(Option::is_some);
+    let mut limits = scene.x_limits.iter().chain(&scene.y_limits);
+    let is_cut = limits.any(Option::is_some);
     if is_cut {
+        let size = [plot_width + 2.0 * EDGE, plot_height + 2.0 * EDGE];
+        let inside = rectangle([left - EDGE, top - EDGE], size);
         let _ = writeln!(
             d.out,
-            "  <clipPath id=\"plot\"><rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/></clipPath>\n  <g clip-path=\"url(#plot)\">",
-            Px(left - EDGE),
-            Px(top - EDGE),
-            Px(plot_width + 2.0 * EDGE),
-            Px(plot_height + 2.0 * EDGE)
+            "  <clipPath id=\"plot\">{inside}</clipPath>\n  <g clip-path=\"url(#plot)\">"
         );
     }
     for k in 0..scene.elements.len() {
@@ -276,6 +263,12 @@ fn plot(scene: &Scene, common: Common<'_>, with_legend: bool) -> String {
     d.out
 }
 
+/// A rectangle from its upper left corner.
+fn rectangle([x, y]: [f64; 2], [width, height]: [f64; 2]) -> String {
+    let [x, y, w, h] = [x, y, width, height].map(Px);
+    format!("<rect x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\"/>")
+}
+
 impl Drawing<'_> {
     /// The colour of a paint.
     fn color(&self, paint: &Paint) -> String {
@@ -288,6 +281,11 @@ impl Drawing<'_> {
                 color::scale(part)
             }
         }
+    }
+
+    /// The colour of a paint, if there is one, else this one.
+    fn color_or(&self, paint: Option<&Paint>, otherwise: &str) -> String {
+        paint.map_or(otherwise.into(), |p| self.color(p))
     }
 
     /// The colour of a series: its own, or the one of its name's or element's number.
@@ -351,11 +349,7 @@ impl Drawing<'_> {
         let e = &scene.elements[k];
         match &e.shape {
             Shape::Polygon(ps) => {
-                let fill = e
-                    .style
-                    .fill
-                    .as_ref()
-                    .map_or("#dde3ea".into(), |p| self.color(p));
+                let fill = self.color_or(e.style.fill.as_ref(), "#dde3ea");
                 let attributes = self.attributes(&e.style, &fill, INK, 1.0, "round");
                 let points = self.points(ps);
                 if !points.is_empty() {
@@ -364,39 +358,24 @@ impl Drawing<'_> {
                 }
             }
             Shape::Polyline(ps) => {
-                let fill = e
-                    .style
-                    .fill
-                    .as_ref()
-                    .map_or("none".into(), |p| self.color(p));
+                let fill = self.color_or(e.style.fill.as_ref(), "none");
                 let attributes = self.attributes(&e.style, &fill, INK, 1.5, "round");
                 self.polyline(ps, attributes);
             }
             Shape::Line(ps) => {
-                let stroke = self.series_color(k);
-                let attributes = self.attributes(
-                    &Style {
-                        stroke: Some(Paint::Color(stroke)),
-                        ..e.style.clone()
-                    },
-                    "none",
-                    INK,
-                    2.0,
-                    "round",
-                );
+                let style = Style {
+                    stroke: Some(Paint::Color(self.series_color(k))),
+                    ..e.style.clone()
+                };
+                let attributes = self.attributes(&style, "none", INK, 2.0, "round");
                 self.polyline(ps, attributes);
             }
             Shape::Points(ps) => {
                 let fill = match (&e.style.fill, &e.name) {
                     (None, Some(_)) => self.series_color(k),
-                    (fill, _) => fill.as_ref().map_or(INK.into(), |p| self.color(p)),
+                    (fill, _) => self.color_or(fill.as_ref(), INK),
                 };
-                let stroke = if e.style.stroke.is_some() {
-                    INK
-                } else {
-                    "none"
-                };
-                let attributes = self.attributes(&e.style, &fill, stroke, 1.0, "round");
+                let attributes = self.attributes(&e.style, &fill, "none", 1.0, "round");
                 self.enter(attributes);
                 let r = Px(e.style.size.unwrap_or(6.0) / 2.0);
                 for (x, y) in self.pixels(ps) {
@@ -437,12 +416,8 @@ impl Drawing<'_> {
         };
         let length = (x1 - x0).hypot(y1 - y0);
         if length > 2.0 * gap {
-            let (ux, uy) = ((x1 - x0) / length, (y1 - y0) / length);
-            self.arrow_in_pixels(
-                [x0 + gap * ux, y0 + gap * uy],
-                [x1 - gap * ux, y1 - gap * uy],
-                style,
-            );
+            let (gx, gy) = (gap * ((x1 - x0) / length), gap * ((y1 - y0) / length));
+            self.arrow_in_pixels([x0 + gx, y0 + gy], [x1 - gx, y1 - gy], style);
         }
     }
 
@@ -454,10 +429,7 @@ impl Drawing<'_> {
         width: f64,
         join: &str,
     ) -> String {
-        let stroke = style
-            .stroke
-            .as_ref()
-            .map_or(stroke.into(), |p| self.color(p));
+        let stroke = self.color_or(style.stroke.as_ref(), stroke);
         let mut a = format!(" fill=\"{fill}\"");
         if stroke == "none" {
             a.push_str(" stroke=\"none\"");
@@ -470,11 +442,8 @@ impl Drawing<'_> {
             if fill == "none" {
                 a.push_str(" stroke-linecap=\"round\"");
             }
-            let dash: Vec<String> = style
-                .dash
-                .iter()
-                .map(|&d| Px(d.max(0.0)).to_string())
-                .collect();
+            let dash = style.dash.iter().map(|&d| Px(d.max(0.0)).to_string());
+            let dash: Vec<String> = dash.collect();
             if !dash.is_empty() {
                 let _ = write!(a, " stroke-dasharray=\"{}\"", dash.join(" "));
             }
@@ -514,30 +483,23 @@ impl Drawing<'_> {
         let (ux, uy) = ((x1 - x0) / length, (y1 - y0) / length);
         let (bx, by) = (x1 - head * ux, y1 - head * uy);
         let half = 0.4 * head;
-        let color = style.stroke.as_ref().map_or(INK.into(), |p| self.color(p));
+        let color = self.color_or(style.stroke.as_ref(), INK);
         let attributes = self.attributes(style, &color, INK, 1.5, "miter");
         self.enter(attributes);
+        let at = |x: f64, y: f64| format!("{},{}", Px(x), Px(y));
+        let (from, base, tip) = (at(x0, y0), at(bx, by), at(x1, y1));
+        let left = at(bx - half * uy, by + half * ux);
+        let right = at(bx + half * uy, by - half * ux);
         let _ = writeln!(
             self.out,
-            "    <path d=\"M{},{} L{},{}\"/><path stroke=\"none\" d=\"M{},{} L{},{} L{},{} Z\"/>",
-            Px(x0),
-            Px(y0),
-            Px(bx),
-            Px(by),
-            Px(x1),
-            Px(y1),
-            Px(bx - half * uy),
-            Px(by + half * ux),
-            Px(bx + half * uy),
-            Px(by - half * ux)
+            "    <path d=\"M{from} L{base}\"/><path stroke=\"none\" d=\"M{tip} L{left} L{right} Z\"/>"
         );
     }
 
     fn text(&mut self, at: [f64; 2], text: &str, anchor: Anchor, style: &Style) {
         let Some((x, y)) = self.point(at) else { return };
         let size = style.size.unwrap_or(12.0);
-        let paint = style.fill.as_ref().or(style.stroke.as_ref());
-        let color = paint.map_or(INK.into(), |p| self.color(p));
+        let color = self.color_or(style.fill.as_ref().or(style.stroke.as_ref()), INK);
         let anchor = match anchor {
             Anchor::Start => "start",
             Anchor::Middle => "middle",
@@ -554,12 +516,8 @@ impl Drawing<'_> {
         }
         self.enter(a);
         // The middle of small letters stands at the point.
-        let (x, y) = (Px(x), Px(y + 0.35 * size));
-        let _ = writeln!(
-            self.out,
-            "    <text x=\"{x}\" y=\"{y}\">{}</text>",
-            escape(text)
-        );
+        let text = words(x, y + 0.35 * size, "", &escape(text));
+        let _ = write!(self.out, "    {text}");
     }
 
     fn bars(&mut self, k: usize, ps: &[[f64; 2]]) {
@@ -570,25 +528,17 @@ impl Drawing<'_> {
         let slot = 0.76 * unit / count;
         let fill = self.series_color(k);
         let style = &self.scene.elements[k].style;
-        let stroke = if style.stroke.is_some() { INK } else { "none" };
-        let attributes = self.attributes(style, &fill, stroke, 1.0, "miter");
+        let attributes = self.attributes(style, &fill, "none", 1.0, "miter");
         self.enter(attributes);
         let base = self.y.at(0.0f64.clamp(self.y.range[0], self.y.range[1]));
-        let base = if base.is_finite() {
-            base
-        } else {
-            self.y.pixels[0]
+        let base = match base.is_finite() {
+            true => base,
+            false => self.y.pixels[0],
         };
         for (x, y) in self.pixels(ps) {
             let left = x + slot * (place - count / 2.0) + 0.04 * slot;
-            let _ = writeln!(
-                self.out,
-                "    <rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/>",
-                Px(left),
-                Px(y.min(base)),
-                Px(0.92 * slot),
-                Px((y - base).abs())
-            );
+            let bar = rectangle([left, y.min(base)], [0.92 * slot, (y - base).abs()]);
+            let _ = writeln!(self.out, "    {bar}");
         }
     }
 }

@@ -1,79 +1,5 @@
 use super::*;
 
-/// Six courses of running bond, their mechanism, sliding contacts in red: what a wall's figure holds.
-fn wall() -> Scene {
-    let mut scene = Scene {
-        title: Some("α =  0.64286".into()),
-        subtitle: Some("collapse mechanism".into()),
-        ..Scene::default()
-    };
-    let mut blocks = Vec::new();
-    for course in 0..6 {
-        let y = 1.75 * f64::from(course);
-        let lengths: &[f64] = if course % 2 == 0 {
-            &[2.0, 4.0, 4.0, 4.0, 4.0, 2.0]
-        } else {
-            &[4.0; 5]
-        };
-        let mut x = 0.0;
-        for &l in lengths {
-            blocks.push([[x, y], [x + l, y], [x + l, y + 1.75], [x, y + 1.75]]);
-            x += l;
-        }
-    }
-    let moved = |p: [f64; 2]| {
-        let lift = if p[1] > 2.0 && p[0] > 20.0 - 1.5 * p[1] {
-            1.0
-        } else {
-            0.0
-        };
-        [p[0] + 0.12 * p[1] * lift, p[1] + 0.03 * (p[0] - 8.0) * lift]
-    };
-    let style = |fill: &str, stroke: &str, opacity| Style {
-        fill: Paint::parse(fill),
-        stroke: Paint::parse(stroke),
-        opacity,
-        ..Style::default()
-    };
-    for b in &blocks {
-        let shape = Shape::Polygon(b.to_vec());
-        scene
-            .elements
-            .push(Element::new(shape).style(style("#f3f1ec", "#d5d0c4", None)));
-    }
-    for b in &blocks {
-        let c = moved([(b[0][0] + b[1][0]) / 2.0, (b[0][1] + b[2][1]) / 2.0]);
-        let c0 = [(b[0][0] + b[1][0]) / 2.0, (b[0][1] + b[2][1]) / 2.0];
-        let t = 0.02 * c[1];
-        let corners = b.iter().map(|p| {
-            let (dx, dy) = (p[0] - c0[0], p[1] - c0[1]);
-            [c[0] + dx + t * dy, c[1] + dy - t * dx]
-        });
-        let shape = Shape::Polygon(corners.collect());
-        scene
-            .elements
-            .push(Element::new(shape).style(style("#e0bd93", "#6b5136", Some(0.85))));
-    }
-    for b in blocks.iter().skip(11).step_by(3) {
-        let red = Style {
-            stroke: Paint::parse("#c62828"),
-            width: Some(2.5),
-            ..Style::default()
-        };
-        let shape = Shape::Polyline(vec![moved(b[0]), moved(b[1])]);
-        scene
-            .elements
-            .push(Element::new(shape).style(red).name("slides"));
-    }
-    let ground = Style {
-        width: Some(2.0),
-        ..Style::default()
-    };
-    let line = Shape::Polyline(vec![[-1.0, 0.0], [21.0, 0.0]]);
-    scene.elements.push(Element::new(line).style(ground));
-    scene
-}
-
 fn charts() -> Scene {
     let mut scene = Scene {
         title: Some("Production & demand <by month>".into()),
@@ -126,9 +52,10 @@ fn colors() -> Scene {
     scene
 }
 
+// (Pictures of walls: tests/scenes.rs.)
 #[test]
 fn pictures_are_whole_and_repeatable() {
-    for (name, scene) in [("wall", wall()), ("charts", charts()), ("colors", colors())] {
+    for scene in [charts(), colors()] {
         let text = svg(&scene);
         assert_eq!(text, svg(&scene));
         assert!(text.starts_with("<svg ") && text.ends_with("</svg>\n"));
@@ -136,14 +63,6 @@ fn pictures_are_whole_and_repeatable() {
         let picture = png(&text, 1.0).expect("a picture");
         assert_eq!(&picture[1..4], b"PNG");
         assert_eq!(picture, png(&text, 1.0).expect("a picture"));
-        if let Ok(folder) = std::env::var("BMOD_FIGURES") {
-            std::fs::write(format!("{folder}/{name}.svg"), &text).expect("written");
-            std::fs::write(
-                format!("{folder}/{name}.png"),
-                png(&text, 2.0).expect("a picture"),
-            )
-            .expect("written");
-        }
     }
 }
 

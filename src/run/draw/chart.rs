@@ -1,7 +1,7 @@
 //! Elements of charts: lines, bars and error bars against numbers or labels, heat maps, Gantt charts,
 //! contours and networks.
 
-use super::{Drawn, Failed, Turns};
+use super::{Drawn, Turns};
 use crate::check::figure::is_text;
 use crate::data::universe::Label;
 use crate::diag::Diagnostic;
@@ -42,11 +42,6 @@ impl Machine<'_> {
     ) -> Categories {
         let mut out = Categories::default();
         let name = |l: Label| self.store.universe.name(l).to_string();
-        let sorted = |mut labels: Vec<Label>| {
-            labels.sort_unstable();
-            labels.dedup();
-            labels
-        };
         let column = |t: &Turns<'_>, at: usize| -> Vec<Label> {
             (0..t.count).map(|k| t.key(k)[at]).collect()
         };
@@ -96,10 +91,9 @@ impl Machine<'_> {
         frame: &mut Frame,
     ) -> Drawn<()> {
         let kind = &*t.element.kind;
-        let ends = if kind == "errorbar" {
-            ["low", "high"]
-        } else {
-            ["y", "y"]
+        let ends = match kind {
+            "errorbar" => ["low", "high"],
+            _ => ["y", "y"],
         };
         for range in t.runs() {
             self.enter(t, range.start, frame);
@@ -153,9 +147,7 @@ impl Machine<'_> {
         let place = |l: Label, of: &FxHashMap<String, f64>| {
             of.get(self.store.universe.name(l)).copied().unwrap_or(0.0)
         };
-        let mut jobs: Vec<Label> = (0..t.count).map(|k| t.key(k)[t.width - 1]).collect();
-        jobs.sort_unstable();
-        jobs.dedup();
+        let jobs = sorted((0..t.count).map(|k| t.key(k)[t.width - 1]).collect());
         for k in 0..t.count {
             self.enter(t, k, frame);
             let (ends, row, half) = if is_heat {
@@ -222,10 +214,7 @@ impl Machine<'_> {
             ys.push(j);
             values.insert((i, j), [at[0], at[1], z]);
         }
-        for labels in [&mut xs, &mut ys] {
-            labels.sort_unstable();
-            labels.dedup();
-        }
+        let (xs, ys) = (sorted(xs), sorted(ys));
         let heights = || values.values().map(|v| v[2]);
         let low = heights().fold(f64::INFINITY, f64::min);
         let high = heights().fold(f64::NEG_INFINITY, f64::max);
@@ -238,13 +227,9 @@ impl Machine<'_> {
             .map_or(8.0, |n| self.number_of(n, frame));
         if !(1.0..=MAX_LEVELS).contains(&count) {
             let span = t.argument("levels").map_or(t.element.span, |n| n.span);
-            Diagnostic::execution("E0483", span)
-                .says(format!(
-                    "{} is not a number of levels from 1 to {MAX_LEVELS}",
-                    self.shown(count)
-                ))
-                .note(self);
-            return Err(Failed);
+            let levels = format!("number of levels from 1 to {MAX_LEVELS}");
+            let message = format!("{} is not a {levels}", self.shown(count));
+            return self.give_up(Diagnostic::execution("E0483", span).says(message));
         }
         let style = self.style(t, frame)?;
         let panel = self.panel(t, frame)?;
@@ -325,11 +310,8 @@ impl Machine<'_> {
                 let first = t.key(k)[t.width - 2];
                 let (Some(&(from, a)), Some(&(to, b))) = (nodes.get(&first), nodes.get(&last))
                 else {
-                    let missing = if nodes.contains_key(&first) {
-                        last
-                    } else {
-                        first
-                    };
+                    let there = nodes.contains_key(&first);
+                    let missing = if there { last } else { first };
                     let name = self.turn_name(&[missing]);
                     Diagnostic::warning("E0482", t.element.span)
                         .says(format!("`arc` leads to `{name}`, which no `node` draws"))
@@ -347,6 +329,13 @@ impl Machine<'_> {
         }
         Ok(())
     }
+}
+
+/// Labels in their order, each once.
+fn sorted(mut labels: Vec<Label>) -> Vec<Label> {
+    labels.sort_unstable();
+    labels.dedup();
+    labels
 }
 
 /// The segment in which a plane over a triangle has this height.

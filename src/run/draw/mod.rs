@@ -273,12 +273,10 @@ impl Machine<'_> {
                     let near = nearest(&word, Paint::names().iter().copied());
                     let others =
                         "colours are CSS names, `#rrggbb`, `none`, or numbers for the colour scale";
-                    Diagnostic::execution("E0372", n.span)
+                    let d = Diagnostic::execution("E0372", n.span)
                         .says(format!("`{word}` is not a colour"))
-                        .label("unknown colour")
-                        .did_you_mean(near, others)
-                        .note(self);
-                    Err(Failed)
+                        .label("unknown colour");
+                    self.give_up(d.did_you_mean(near, others))
                 }
             },
             _ => Ok(None),
@@ -298,21 +296,15 @@ impl Machine<'_> {
                 "dashed" => vec![6.0, 4.0],
                 "dotted" => vec![1.5, 3.0],
                 list => {
-                    let lengths: Vec<Option<f64>> = list
-                        .split([' ', ','])
-                        .filter(|p| !p.is_empty())
-                        .map(|p| p.parse().ok())
-                        .collect();
-                    match lengths.into_iter().collect::<Option<Vec<f64>>>() {
-                        Some(l) if l.iter().all(|x| *x >= 0.0) => l,
-                        _ => {
-                            Diagnostic::execution("E0483", n.span)
-                                .says(format!("`{list}` is not a dash"))
-                                .help("`dashed`, `dotted`, or lengths of dashes and gaps in pixels: `'6 2'`")
-                                .note(self);
-                            return Err(Failed);
-                        }
-                    }
+                    let lengths = list.split([' ', ',']).filter(|p| !p.is_empty());
+                    let lengths = lengths.map(|p| p.parse().ok().filter(|x: &f64| *x >= 0.0));
+                    let Some(lengths) = lengths.collect() else {
+                        let d = Diagnostic::execution("E0483", n.span)
+                            .says(format!("`{list}` is not a dash"))
+                            .help("`dashed`, `dotted`, or lengths of dashes and gaps in pixels: `'6 2'`");
+                        return self.give_up(d);
+                    };
+                    lengths
                 }
             },
         };
@@ -326,12 +318,22 @@ impl Machine<'_> {
         })
     }
 
+    /// Notes why a picture is not drawn.
+    fn give_up<T>(&self, d: Diagnostic) -> Drawn<T> {
+        d.note(self);
+        Err(Failed)
+    }
+
     /// Name in the legend.
     fn legend_name(&self, t: &Turns<'_>, frame: &mut Frame) -> Drawn<Option<String>> {
-        match t.argument("label") {
-            Some(n) => Ok(Some(self.text(&[n], n.span, frame)?).filter(|t| !t.is_empty())),
-            None => Ok(None),
-        }
+        let name = self.text_of(t, "label", frame)?;
+        Ok(name.filter(|t| !t.is_empty()))
+    }
+
+    /// The text of an argument, if it is given.
+    fn text_of(&self, t: &Turns<'_>, name: &str, frame: &mut Frame) -> Drawn<Option<String>> {
+        let text = t.argument(name).map(|n| self.text(&[n], n.span, frame));
+        text.transpose()
     }
 
     /// The text of an element: `label`, a format for the bare values if there are any.
@@ -350,10 +352,7 @@ impl Machine<'_> {
 
     /// The panel of small multiples that an element belongs to.
     fn panel(&self, t: &Turns<'_>, frame: &mut Frame) -> Drawn<Option<String>> {
-        match t.argument("panel") {
-            Some(n) => Ok(Some(self.text(&[n], n.span, frame)?)),
-            None => Ok(None),
-        }
+        self.text_of(t, "panel", frame)
     }
 
     /// Adds an element to a picture; fails once the run is to stop.
@@ -442,11 +441,9 @@ impl Machine<'_> {
                             "end" | "right" => Anchor::End,
                             "middle" | "center" | "centre" => Anchor::Middle,
                             other => {
-                                Diagnostic::execution("E0483", n.span)
-                                    .says(format!("`{other}` is not an alignment"))
-                                    .help("there are: start, middle, end")
-                                    .note(self);
-                                return Err(Failed);
+                                let d = Diagnostic::execution("E0483", n.span)
+                                    .says(format!("`{other}` is not an alignment"));
+                                return self.give_up(d.help("there are: start, middle, end"));
                             }
                         },
                     };
@@ -463,12 +460,11 @@ impl Machine<'_> {
         for (name, n) in &e.arguments {
             if &*e.kind == "size" {
                 let v = self.number_of(n, frame);
-                let Some(v) = v.is_finite().then_some(v).filter(|v| *v > 0.0) else {
-                    Diagnostic::execution("E0483", n.span)
-                        .says(format!("{} is not a size in pixels", self.shown(v)))
-                        .note(self);
-                    return Err(Failed);
-                };
+                if !v.is_finite() || v <= 0.0 {
+                    let d = Diagnostic::execution("E0483", n.span);
+                    return self
+                        .give_up(d.says(format!("{} is not a size in pixels", self.shown(v))));
+                }
                 match name.as_deref() {
                     Some("width") => scene.width = Some(v),
                     Some(_) => scene.height = Some(v),

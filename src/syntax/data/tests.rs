@@ -48,7 +48,6 @@ fn all(text: &str, kind: DataKind) -> Vec<String> {
 #[test]
 fn sets() {
     let read = |t| all(t, DataKind::Set);
-    assert_eq!(read("a, b\nc  "), ["a", "b", "c"]);
     assert_eq!(
         read(" a  first one, b 'the second',\n'c d'   it's third\n"),
         [
@@ -78,18 +77,11 @@ fn sets() {
 #[test]
 fn values() {
     let read = |t| all(t, DataKind::Values);
-    assert_eq!(read("a 1, b 2.5\nc -3e2"), ["a=1", "b=2.5", "c=-300"]);
-    assert_eq!(
-        read("a.b = 3, (a,b).c 3.5, a.b.c -inf"),
-        ["a.b=3", "(a,b).c=3.5", "a.b.c=-inf"]
-    );
     assert_eq!(read(" 5 "), ["=5"]);
     assert_eq!(read("-.5e1"), ["=-5"]);
     assert_eq!(read("- 5"), ["=-5"]);
     assert_eq!(read("inf"), ["=inf"]);
-    assert_eq!(read("1 2, 2 3"), ["1=2", "2=3"]);
     assert_eq!(read("1990 5\n1991 6.5"), ["1990=5", "1991=6.5"]);
-    assert_eq!(read("a.lo 5, b.l 3"), ["a.lo=5", "b.l=3"]);
     assert_eq!(read("a mon, b +inf, c yes"), ["a~mon", "b=inf", "c=1"]);
     assert_eq!(read("a 1x, b 2"), ["!E0245", "b=2"]);
     assert_eq!(read("1.2.3 4"), ["1.2.3=4"]);

@@ -204,6 +204,32 @@ pub(super) fn legend_names(scene: &Scene) -> Vec<&str> {
     names
 }
 
+/// A text, with what else is said of it.
+pub(super) fn words(x: f64, y: f64, more: &str, text: &str) -> String {
+    format!(
+        "<text x=\"{}\" y=\"{}\"{more}>{text}</text>\n",
+        Px(x),
+        Px(y)
+    )
+}
+
+/// A line, with what else is said of it.
+fn line(from: [f64; 2], to: [f64; 2], more: &str) -> String {
+    let [x1, y1, x2, y2] = [from[0], from[1], to[0], to[1]].map(Px);
+    format!("<line x1=\"{x1}\" y1=\"{y1}\" x2=\"{x2}\" y2=\"{y2}\"{more}/>\n")
+}
+
+/// A text at an angle about the place where it stands, with what else is said of it.
+fn turned(x: f64, y: f64, anchor: &str, angle: i32, more: &str, text: &str) -> String {
+    let about = format!("rotate({angle} {} {})", Px(x), Px(y));
+    words(
+        x,
+        y,
+        &format!(" text-anchor=\"{anchor}\" transform=\"{about}\"{more}"),
+        text,
+    )
+}
+
 impl Drawing<'_> {
     pub(super) fn head(&mut self, width: f64, height: f64) {
         let (w, h) = (Px(width.round()), Px(height.round()));
@@ -231,11 +257,9 @@ impl Drawing<'_> {
     }
 
     fn heading(&mut self, y: f64, style: &str, text: &str) {
-        let (x, y, text) = (Px(MARGIN), Px(y), escape(text));
-        let _ = writeln!(
-            self.out,
-            "  <text x=\"{x}\" y=\"{y}\" {style}>{text}</text>"
-        );
+        self.out.push_str("  ");
+        self.out
+            .push_str(&words(MARGIN, y, &format!(" {style}"), &escape(text)));
     }
 
     pub(super) fn axes(&mut self, rotate: bool) {
@@ -247,20 +271,10 @@ impl Drawing<'_> {
             if y < top - 0.5 || y > bottom + 0.5 {
                 continue;
             }
-            let text = escape(&text);
-            let _ = writeln!(
-                grid,
-                "    <line x1=\"{}\" y1=\"{y}\" x2=\"{}\" y2=\"{y}\"/>",
-                Px(left),
-                Px(right),
-                y = Px(y)
-            );
-            let _ = writeln!(
-                labels,
-                "    <text x=\"{}\" y=\"{}\" text-anchor=\"end\">{text}</text>",
-                Px(left - 7.0),
-                Px(y + 4.0)
-            );
+            let end = " text-anchor=\"end\"";
+            let text = words(left - 7.0, y + 4.0, end, &escape(&text));
+            let _ = write!(grid, "    {}", line([left, y], [right, y], ""));
+            let _ = write!(labels, "    {text}");
         }
         let x_ticks: Vec<(f64, String)> = if self.scene.categories.is_empty() {
             tick_texts(self.x.range, self.scene.x_log, (right - left) / 90.0)
@@ -277,29 +291,14 @@ impl Drawing<'_> {
                 continue;
             }
             if self.scene.categories.is_empty() {
-                let _ = writeln!(
-                    grid,
-                    "    <line x1=\"{x}\" y1=\"{}\" x2=\"{x}\" y2=\"{}\"/>",
-                    Px(top),
-                    Px(bottom),
-                    x = Px(x)
-                );
+                let _ = write!(grid, "    {}", line([x, top], [x, bottom], ""));
             }
             let y = bottom + 18.0;
-            let _ = if rotate {
-                let (x, y) = (Px(x + 4.0), Px(y - 4.0));
-                writeln!(
-                    labels,
-                    "    <text x=\"{x}\" y=\"{y}\" text-anchor=\"end\" transform=\"rotate(-45 {x} {y})\">{text}</text>"
-                )
-            } else {
-                writeln!(
-                    labels,
-                    "    <text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{text}</text>",
-                    Px(x),
-                    Px(y)
-                )
+            let text = match rotate {
+                true => turned(x + 4.0, y - 4.0, "end", -45, "", &text),
+                false => words(x, y, " text-anchor=\"middle\"", &text),
             };
+            let _ = write!(labels, "    {text}");
         }
         let _ = write!(
             self.out,
@@ -309,13 +308,8 @@ impl Drawing<'_> {
             false => self.y.at(0.0f64.clamp(self.y.range[0], self.y.range[1])),
             true => bottom,
         };
-        let _ = writeln!(
-            self.out,
-            "  <line x1=\"{}\" y1=\"{y}\" x2=\"{}\" y2=\"{y}\" stroke=\"{QUIET}\" stroke-width=\"1\"/>",
-            Px(left),
-            Px(right),
-            y = Px(base)
-        );
+        let stroke = format!(" stroke=\"{QUIET}\" stroke-width=\"1\"");
+        let _ = write!(self.out, "  {}", line([left, base], [right, base], &stroke));
         self.axis_labels(rotate);
     }
 
@@ -324,27 +318,18 @@ impl Drawing<'_> {
         let [left, right] = self.x.pixels;
         let [bottom, top] = self.y.pixels;
         if let Some(label) = &self.scene.x_label {
-            let room = if rotate { 0.0 } else { 38.0 };
-            let y = if rotate {
-                self.bottom_edge() - 8.0
-            } else {
-                bottom + room
+            let y = match rotate {
+                true => self.bottom_edge() - 8.0,
+                false => bottom + 38.0,
             };
-            let _ = writeln!(
-                self.out,
-                "  <text x=\"{}\" y=\"{}\" text-anchor=\"middle\" fill=\"{INK}\">{}</text>",
-                Px((left + right) / 2.0),
-                Px(y),
-                escape(label)
-            );
+            let middle = format!(" text-anchor=\"middle\" fill=\"{INK}\"");
+            let text = words((left + right) / 2.0, y, &middle, &escape(label));
+            let _ = write!(self.out, "  {text}");
         }
         if let Some(label) = &self.scene.y_label {
-            let (x, y) = (Px(MARGIN + 4.0), Px((top + bottom) / 2.0));
-            let _ = writeln!(
-                self.out,
-                "  <text x=\"{x}\" y=\"{y}\" text-anchor=\"middle\" transform=\"rotate(-90 {x} {y})\" fill=\"{INK}\">{}</text>",
-                escape(label)
-            );
+            let (y, ink) = ((top + bottom) / 2.0, format!(" fill=\"{INK}\""));
+            let text = turned(MARGIN + 4.0, y, "middle", -90, &ink, &escape(label));
+            let _ = write!(self.out, "  {text}");
         }
     }
 
@@ -359,57 +344,34 @@ impl Drawing<'_> {
             let y = top + 20.0 * r as f64 + 8.0;
             for &(k, offset) in row {
                 let name = self.names[k];
-                let Some(number) = self
-                    .scene
-                    .elements
-                    .iter()
-                    .position(|e| e.name.as_deref() == Some(name))
-                else {
-                    continue;
-                };
-                let e = &self.scene.elements[number];
+                let mut elements = self.scene.elements.iter();
+                let number = elements.position(|e| e.name.as_deref() == Some(name));
+                let Some(number) = number else { continue };
+                let Element { shape, style, .. } = &self.scene.elements[number];
                 let x = MARGIN + offset;
-                let color = match e.shape {
-                    Shape::Polygon(_) => e
-                        .style
-                        .fill
-                        .as_ref()
-                        .map_or("#dde3ea".into(), |p| self.color(p)),
-                    Shape::Polyline(_) | Shape::Arrow(..) => e
-                        .style
-                        .stroke
-                        .as_ref()
-                        .map_or(INK.into(), |p| self.color(p)),
+                let color = match shape {
+                    Shape::Polygon(_) => self.color_or(style.fill.as_ref(), "#dde3ea"),
+                    Shape::Polyline(_) | Shape::Arrow(..) => {
+                        self.color_or(style.stroke.as_ref(), INK)
+                    }
                     _ => self.series_color(number),
                 };
-                let line = matches!(
-                    e.shape,
-                    Shape::Line(_) | Shape::Polyline(_) | Shape::Arrow(..)
-                );
-                let _ = if line {
-                    let width = Px(e.style.width.unwrap_or(2.0));
-                    writeln!(
-                        self.out,
-                        "  <line x1=\"{}\" y1=\"{y}\" x2=\"{}\" y2=\"{y}\" stroke=\"{color}\" stroke-width=\"{width}\"/>",
-                        Px(x),
-                        Px(x + 18.0),
-                        y = Px(y)
-                    )
-                } else {
-                    writeln!(
-                        self.out,
-                        "  <rect x=\"{}\" y=\"{}\" width=\"12\" height=\"12\" rx=\"2\" fill=\"{color}\"/>",
-                        Px(x + 3.0),
-                        Px(y - 6.0)
-                    )
+                let mark = match shape {
+                    Shape::Line(_) | Shape::Polyline(_) | Shape::Arrow(..) => {
+                        let width = Px(style.width.unwrap_or(2.0));
+                        let stroke = format!(" stroke=\"{color}\" stroke-width=\"{width}\"");
+                        line([x, y], [x + 18.0, y], &stroke)
+                    }
+                    _ => {
+                        let (x, y) = (Px(x + 3.0), Px(y - 6.0));
+                        format!(
+                            "<rect x=\"{x}\" y=\"{y}\" width=\"12\" height=\"12\" rx=\"2\" fill=\"{color}\"/>\n"
+                        )
+                    }
                 };
-                let _ = writeln!(
-                    self.out,
-                    "  <text x=\"{}\" y=\"{}\" fill=\"{INK}\">{}</text>",
-                    Px(x + 24.0),
-                    Px(y + 4.0),
-                    escape(name)
-                );
+                let ink = format!(" fill=\"{INK}\"");
+                let text = words(x + 24.0, y + 4.0, &ink, &escape(name));
+                let _ = write!(self.out, "  {mark}  {text}");
             }
         }
     }
@@ -425,20 +387,14 @@ impl Drawing<'_> {
             .push_str("  <defs><linearGradient id=\"scale\" x1=\"0\" y1=\"1\" x2=\"0\" y2=\"0\">");
         for k in 0..=8 {
             let part = f64::from(k) / 8.0;
-            let _ = write!(
-                self.out,
-                "<stop offset=\"{}\" stop-color=\"{}\"/>",
-                part,
-                color::scale(part)
-            );
+            let color = color::scale(part);
+            let _ = write!(self.out, "<stop offset=\"{part}\" stop-color=\"{color}\"/>");
         }
         self.out.push_str("</linearGradient></defs>\n");
+        let (left, top, high) = (Px(x), Px(y1), Px(long));
         let _ = writeln!(
             self.out,
-            "  <rect x=\"{}\" y=\"{}\" width=\"12\" height=\"{}\" fill=\"url(#scale)\"/>",
-            Px(x),
-            Px(y1),
-            Px(long)
+            "  <rect x=\"{left}\" y=\"{top}\" width=\"12\" height=\"{high}\" fill=\"url(#scale)\"/>"
         );
         let axis = Axis {
             range: [lo, hi],
@@ -447,21 +403,13 @@ impl Drawing<'_> {
         };
         let _ = writeln!(self.out, "  <g font-size=\"11\" fill=\"{QUIET}\">");
         for (v, text) in tick_texts([lo, hi], false, 5.0) {
-            let y = Px(axis.at(v) + 4.0);
-            let _ = writeln!(
-                self.out,
-                "    <text x=\"{}\" y=\"{y}\">{text}</text>",
-                Px(x + 17.0)
-            );
+            let text = words(x + 17.0, axis.at(v) + 4.0, "", &text);
+            let _ = write!(self.out, "    {text}");
         }
         if let Some(label) = &self.scene.scale_label {
-            let _ = writeln!(
-                self.out,
-                "    <text x=\"{}\" y=\"{}\" text-anchor=\"end\">{}</text>",
-                Px(x + 12.0 + 30.0),
-                Px(y1 - 9.0),
-                escape(label)
-            );
+            let end = " text-anchor=\"end\"";
+            let text = words(x + 12.0 + 30.0, y1 - 9.0, end, &escape(label));
+            let _ = write!(self.out, "    {text}");
         }
         self.out.push_str("  </g>\n");
     }
