@@ -377,6 +377,8 @@ impl Compiler {
         let name = self.symbols.get(e.symbol).name.clone();
         let linear_only = using.is_linear();
         let smooth_only = !using.allows_kinks() && !linear_only;
+        // GAMS warns of what is not smooth by the type `dnlp`; programs with integers it takes as they are
+        let takes_relations = matches!(using, ProblemType::Dnlp | ProblemType::Minlp | ProblemType::Rminlp);
         let mut found: Option<(Span, String, &'static str, String)> = None;
         for side in [&e.left, &e.right] {
             side.each(|n| {
@@ -386,7 +388,7 @@ impl Compiler {
                 if let NodeKind::Binary(op, ..) = &n.kind
                     && *op != BinaryOp::Power
                 {
-                    if using != ProblemType::Dnlp {
+                    if !takes_relations {
                         found = Some((
                             n.span,
                             "a relation between variables has no derivative".into(),
@@ -396,7 +398,7 @@ impl Compiler {
                         ));
                     }
                 } else if let NodeKind::Not(_) = &n.kind
-                    && using != ProblemType::Dnlp
+                    && !takes_relations
                 {
                     found = Some((
                         n.span,

@@ -171,7 +171,9 @@ fn solve_from(
         refused: None,
         strategies: request.strategies,
     };
-    let working = lambda.and_then(|l| method.named_by(&l));
+    let working = lambda
+        .and_then(|l| method.named_by(&l))
+        .or_else(|| method.at_hand());
     let (steps, mut end) = method.run(working, request.effort.steps);
     if !again && end == End::Solved && method.at.is_level(method.nlp, &method.frame, FLATTER) {
         end = End::Outgrown;
@@ -347,6 +349,13 @@ impl Method<'_, '_> {
             row: (0..frame.m).map(row).collect(),
             pull: vec![0.0; frame.m],
         })
+    }
+
+    /// Where there are equations only: these, and the bounds at which variables stand.
+    fn at_hand(&self) -> Option<Working> {
+        let chosen = (0..self.frame.m).all(|i| self.frame.is_equation(i))
+            && self.strategies.run(Strategy::ActiveSetNewton);
+        chosen.then(|| self.named_by(&self.lambda)).flatten()
     }
 
     /// Newton's step on a working set, which is returned if it may stay. Otherwise nothing has changed, or a step was taken
