@@ -378,7 +378,10 @@ impl Compiler {
         let linear_only = using.is_linear();
         let smooth_only = !using.allows_kinks() && !linear_only;
         // GAMS warns of what is not smooth by the type `dnlp`; programs with integers it takes as they are
-        let takes_relations = matches!(using, ProblemType::Dnlp | ProblemType::Minlp | ProblemType::Rminlp);
+        let takes_relations = matches!(
+            using,
+            ProblemType::Dnlp | ProblemType::Minlp | ProblemType::Rminlp
+        );
         let mut found: Option<(Span, String, &'static str, String)> = None;
         for side in [&e.left, &e.right] {
             side.each(|n| {
