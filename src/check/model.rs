@@ -364,7 +364,11 @@ impl Compiler {
         let name = self.symbols.get(e.symbol).name.clone();
         let linear_only = using.is_linear();
         let smooth_only = !using.allows_kinks() && !linear_only;
-        let is_dnlp = using == ProblemType::Dnlp;
+        // GAMS warns of what is not smooth by the type `dnlp`; programs with integers it takes as they are.
+        let takes_relations = matches!(
+            using,
+            ProblemType::Dnlp | ProblemType::Minlp | ProblemType::Rminlp
+        );
         let mut found: Option<(Span, String, &'static str, String)> = None;
         let mut look = |n: &Node| {
             if found.is_some() || !n.has_var {
@@ -372,7 +376,7 @@ impl Compiler {
             }
             let (what, code, help): (String, _, String) = match &n.kind {
                 NodeKind::Binary(op, ..) if *op != BinaryOp::Power => {
-                    if is_dnlp {
+                    if takes_relations {
                         return;
                     }
                     let help =
@@ -380,7 +384,7 @@ impl Compiler {
                     let what = "a relation between variables has no derivative";
                     (what.into(), "E0362", help.into())
                 }
-                NodeKind::Not(_) if !is_dnlp => {
+                NodeKind::Not(_) if !takes_relations => {
                     let what = "`not` of a variable has no derivative";
                     (what.into(), "E0362", "use `dnlp`".into())
                 }

@@ -21,7 +21,7 @@ pub(super) const SILENT: &[&str] = &[
 /// Files of `$libInclude` that hand data to another program, and give nothing back.
 #[rustfmt::skip]
 pub(super) const EXPORTS: &[&str] = &[
-    "gams2tbl", "gams2txt", "gnuplot", "gnuplotxyz", "gnupltxy", "xlchart", "xldump", "xlexport",
+    "gams2tbl", "gams2txt", "gnuplot", "gnuplotxyz", "gnupltxy", "win32", "xlchart", "xldump", "xlexport",
 ];
 
 /// Directives with the rest of their line as argument, without effect here.

@@ -141,7 +141,9 @@ fn behind_separators(rest: &str) -> &str {
 impl Preprocessor<'_> {
     /// A line that begins with `$`, without its comments.
     pub(super) fn directive_line(&mut self, line: Line, known: &dyn Known) -> Outcome<()> {
-        let start = self.marks.directive(&line.text).unwrap_or(1);
+        // All of it may have been a comment.
+        let start = self.marks.directive(&line.text);
+        let start = start.unwrap_or(line.text.len().min(1));
         self.directives(&line, start, known)
     }
 

@@ -10,6 +10,7 @@ embeddedCode Connect:
 endEmbeddedCode
 p(i) = p(i) + 1;
 $libInclude xldump p out.xls sheet!a1
+$libInclude win32 shellExecute "out.html"
 $onEmbeddedCode Connect:
 - CSVWriter:
     file: out.csv

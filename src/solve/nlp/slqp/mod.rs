@@ -245,6 +245,7 @@ impl Method<'_, '_> {
     fn run(&mut self, mut working: Option<Working>, most: u64) -> (u64, End) {
         let mut steps = 0;
         let mut halved = (0, f64::INFINITY);
+        let mut tried = f64::INFINITY;
         while steps < most && !self.budget.is_over() {
             self.frame.see_rounding(&self.at);
             let residual = self.at.residual(&self.frame, &self.lambda);
@@ -262,6 +263,9 @@ impl Method<'_, '_> {
             }
             steps += 1;
             self.note(steps);
+            if working.is_none() && residual < 0.5 * tried {
+                (working, tried) = (self.at_hand(), residual);
+            }
             if let Some(held) = working.take() {
                 working = self.newton(held);
                 if working.is_some() {
@@ -349,6 +353,39 @@ impl Method<'_, '_> {
         })
     }
 
+    /// Where there are equations only: these, and the bounds that variables do not want to leave.
+    fn at_hand(&self) -> Option<Working> {
+        let known = (0..self.frame.m).all(|i| self.frame.is_equation(i))
+            && self.strategies.run(Strategy::ActiveSetNewton);
+        let mut working = known.then(|| self.named_by(&self.lambda)).flatten()?;
+        let reduced = self.reduced();
+        for (j, bound) in working.column.iter_mut().enumerate() {
+            *bound = bound.filter(|&b| self.keeps(j, b, reduced[j]));
+        }
+        Some(working)
+    }
+
+    /// The gradient of the Lagrangian.
+    fn reduced(&self) -> Vec<f64> {
+        let mut reduced = self.at.gradient.clone();
+        for (i, &l) in self.lambda.iter().enumerate().filter(|l| *l.1 != 0.0) {
+            for (j, a) in self.at.rows.line(i) {
+                reduced[j] += l * a;
+            }
+        }
+        reduced
+    }
+
+    /// Whether a variable with this reduced cost stays at a bound.
+    fn keeps(&self, j: usize, bound: f64, reduced: f64) -> bool {
+        let (lower, upper) = (self.frame.lower[j], self.frame.upper[j]);
+        match lower == upper {
+            true => true,
+            false if bound == lower => reduced >= -SOLVED,
+            false => reduced <= SOLVED,
+        }
+    }
+
     /// Newton's step on a working set, which is returned if it may stay. Otherwise nothing has changed, or a step was taken
     /// that needs another set.
     fn newton(&mut self, working: Working) -> Option<Working> {
@@ -385,12 +422,7 @@ impl Method<'_, '_> {
     /// Whether no row or bound of the set would rather be left, and no other row is violated.
     fn signs_are_right(&self, working: &Working) -> bool {
         let frame = &self.frame;
-        let mut reduced = self.at.gradient.clone();
-        for (i, &l) in self.lambda.iter().enumerate().filter(|l| *l.1 != 0.0) {
-            for (j, a) in self.at.rows.line(i) {
-                reduced[j] += l * a;
-            }
-        }
+        let reduced = self.reduced();
         let rows = (0..frame.m).all(|i| match working.row[i] {
             _ if working.pull[i] != 0.0 => false,
             Some(_) if frame.is_equation(i) => true,
@@ -398,12 +430,8 @@ impl Method<'_, '_> {
             Some(_) => self.lambda[i] <= SOLVED,
             None => frame.missing(i, self.at.values.g[i]) == 0.0,
         });
-        let columns = (0..frame.n).all(|j| match working.column[j] {
-            _ if frame.lower[j] == frame.upper[j] => true,
-            Some(b) if b == frame.lower[j] => reduced[j] >= -SOLVED,
-            Some(_) => reduced[j] <= SOLVED,
-            None => true,
-        });
+        let columns =
+            (0..frame.n).all(|j| working.column[j].is_none_or(|b| self.keeps(j, b, reduced[j])));
         rows && columns
     }
 
