@@ -32,12 +32,22 @@ pub struct Block {
 }
 
 /// Compressed adjacency lists.
-struct Graph {
+pub(super) struct Graph {
     start: Vec<usize>,
     index: Vec<usize>,
 }
 
 impl Graph {
+    /// From the neighbours of each vertex.
+    pub(super) fn new(lines: impl Iterator<Item = impl Iterator<Item = usize>>) -> Self {
+        let (mut start, mut index) = (vec![0], Vec::new());
+        for line in lines {
+            index.extend(line);
+            start.push(index.len());
+        }
+        Self { start, index }
+    }
+
     fn of(&self, i: usize) -> &[usize] {
         &self.index[self.start[i]..self.start[i + 1]]
     }
@@ -105,7 +115,7 @@ pub fn examine(instance: &Instance, row_of: &[Option<u32>], square: bool) -> Vec
 
 /// Matches every vertex of `left` with one of its neighbours; if that is impossible, the part of `left`
 /// that alternating paths reach from an unmatched vertex, and its fewer neighbours.
-fn deficient(
+pub(super) fn deficient(
     graph: &Graph,
     left: &[usize],
     right: usize,
@@ -180,20 +190,14 @@ mod tests {
     use super::*;
 
     fn graph(rows: &[&[usize]]) -> Graph {
-        let mut g = Graph {
-            start: vec![0],
-            index: Vec::new(),
-        };
-        for r in rows {
-            g.index.extend_from_slice(r);
-            g.start.push(g.index.len());
-        }
-        g
+        Graph::new(rows.iter().map(|r| r.iter().copied()))
     }
 
     #[test]
     fn a_matching_is_found_by_exchanges() {
         let g = graph(&[&[0, 1], &[0], &[1, 2], &[2, 3]]);
+        assert_eq!(deficient(&g, &[0, 1, 2, 3], 4, |_| true), None);
+        let g = graph(&[&[0, 1], &[1, 2], &[0], &[2, 3]]);
         assert_eq!(deficient(&g, &[0, 1, 2, 3], 4, |_| true), None);
     }
 
