@@ -12,7 +12,6 @@ pub mod conflict;
 pub mod cuts;
 mod driver;
 mod heuristics;
-mod jump;
 pub mod linear;
 pub mod nonlinear;
 mod outer;

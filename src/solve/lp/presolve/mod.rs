@@ -6,14 +6,12 @@
 //! * a row of one column becomes bounds; a row that bounds imply goes; one that only one point can hold fixes it (*forcing*);
 //! * a column of one row is the slack of that row;
 //! * an equation gives a column as a combination of others where its bounds follow from theirs, or where there is but one other;
-//! * a free column gives its place to the activity of an inequality, which becomes the bounds of a column;
-//! * of rows, or columns, that are multiples of each other one stays.
+//! * a free column gives its place to the activity of an inequality, which becomes the bounds of a column.
 //!
 //! The data of the smaller program are rounded. That is harmless: the basis is what comes back, and the simplex method goes
 //! on from it in the program as it was given.
 
 mod columns;
-mod parallel;
 mod restore;
 mod rows;
 #[cfg(test)]
@@ -90,23 +88,6 @@ enum Step {
         a: f64,
         /// The row without the column.
         entries: Entries,
-    },
-    /// A row that is `ratio` times another; which sides of the one that stays are its own.
-    Row {
-        kept: u32,
-        gone: u32,
-        ratio: f64,
-        from_gone: [bool; 2],
-        /// The sides are one.
-        fixed: bool,
-    },
-    /// A column that is `ratio` times another; the bounds of both.
-    Column {
-        kept: u32,
-        gone: u32,
-        ratio: f64,
-        kept_bounds: [f64; 2],
-        gone_bounds: [f64; 2],
     },
 }
 
@@ -298,7 +279,6 @@ impl Work {
     }
 
     fn run(&mut self) -> Result<(), Hopeless> {
-        let mut parallel = 0;
         for _ in 0..ROUNDS {
             for i in self.new_rows.take() {
                 if self.row_alive[i as usize] {
@@ -310,16 +290,8 @@ impl Work {
                     self.column(j as usize)?;
                 }
             }
-            if self.new_rows.list.is_empty() && self.new_columns.list.is_empty() {
-                let before = self.steps.len();
-                if parallel < 3 {
-                    parallel += 1;
-                    self.parallel_rows()?;
-                    self.parallel_columns();
-                }
-                if self.steps.len() == before {
-                    break;
-                }
+            if self.new_rows.list.is_empty() {
+                break;
             }
         }
         Ok(())

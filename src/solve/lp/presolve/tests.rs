@@ -22,18 +22,13 @@ impl Draw {
     }
 }
 
-/// A program with a point: rows of one to four columns, some of them multiples of each other, and columns likewise.
+/// A program with a point: rows of one to four columns.
 fn drawn(seed: u64) -> Problem {
     let mut draw = Draw(seed);
     let (m, n) = (4 + draw.below(12) as usize, 4 + draw.below(12) as usize);
     let mut p = Problem::default();
     let mut rows: Vec<Vec<(usize, f64)>> = Vec::new();
-    for i in 0..m {
-        if i > 1 && draw.below(8) == 0 {
-            let (twin, by) = (rows[i - 1].clone(), draw.number());
-            rows.push(twin.iter().map(|&(j, a)| (j, a * by)).collect());
-            continue;
-        }
+    for _ in 0..m {
         let mut row: Vec<(usize, f64)> = Vec::new();
         for _ in 0..1 + draw.below(4) {
             let j = draw.below(n as u64) as usize;
