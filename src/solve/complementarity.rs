@@ -257,8 +257,7 @@ fn run(
     settings: &Settings,
     budget: &Budget,
 ) -> Result<(mcp::Outcome, SolverStatus), SolveError> {
-    let mut limits = mcp::Settings::with(&settings.options);
-    limits.strategies = settings.strategies();
+    let mut limits = mcp::Settings::new(settings);
     let left = usize::try_from(budget.iterations_left()).unwrap_or(usize::MAX);
     limits.cumulative_iteration_limit = limits.cumulative_iteration_limit.min(left);
     let seconds = limits.time_limit;

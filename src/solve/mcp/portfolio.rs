@@ -153,8 +153,7 @@ fn attempt(run: &mut Run, restarts: &mut usize) -> Result<(), Stop> {
         }
     }
     let acceptable = run.settings.acceptable_tolerance;
-    if !run.settings.fallbacks
-        || run.best.as_ref().is_some_and(|b| b.residual <= acceptable)
+    if run.best.as_ref().is_some_and(|b| b.residual <= acceptable)
         || !run.settings.strategies.run(Strategy::RandomRestarts)
     {
         return Ok(());
