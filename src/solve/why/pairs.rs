@@ -11,9 +11,10 @@ use super::point::{largest, no_value};
 use super::{FEW, Finding};
 use crate::autodiff::Evaluator;
 use crate::model::instance::Instance;
+use crate::solve::lp::form::Sparse;
 use crate::solve::lp::simplex::factor::{Entries, Factor, Failure};
 use crate::solve::pairing::match_rows;
-use crate::solve::structure::{Graph, deficient};
+use crate::solve::structure::deficient;
 
 /// All findings about pairs at a point.
 pub(super) fn findings(instance: &Instance, square: bool, x: &[f64]) -> Vec<Finding> {
@@ -59,34 +60,24 @@ pub(super) fn findings(instance: &Instance, square: bool, x: &[f64]) -> Vec<Find
     for (k, &(_, j)) in open.iter().enumerate() {
         place[j] = k;
     }
-    let lines: Vec<Entries> = open
-        .iter()
-        .map(|&(i, _)| {
-            (start[i]..start[i + 1])
-                .filter(|&k| place[column[k] as usize] != usize::MAX)
-                .map(|k| (place[column[k] as usize], values[k]))
-                .collect()
-        })
-        .collect();
-    // An entry counts where its number is not 0.
-    let graph = Graph::new(
-        lines
-            .iter()
-            .map(|line| line.iter().filter(|e| e.1 != 0.0).map(|e| e.0)),
-    );
+    let mut lines = Sparse::new();
+    for &(i, _) in &open {
+        let entries = (start[i]..start[i + 1]).map(|k| (place[column[k] as usize], values[k]));
+        lines.push(entries.filter(|e| e.0 != usize::MAX && e.1 != 0.0));
+    }
     let all: Vec<usize> = (0..open.len()).collect();
-    if let Some((rows, columns)) = deficient(&graph, &all, open.len(), |_| true) {
+    if let Some((rows, columns)) = deficient(&lines, &all, open.len(), |_| true) {
         out.push(Finding::Structural {
             rows: rows.iter().take(FEW).map(|&k| open[k].0).collect(),
             columns: columns.iter().take(FEW).map(|&k| open[k].1).collect(),
         });
     } else if !open.is_empty() {
         let mut by_column: Vec<Entries> = vec![Vec::new(); open.len()];
-        for (r, line) in lines.iter().enumerate() {
-            let top = line.iter().fold(0.0f64, |t, e| t.max(e.1.abs()));
-            for &(c, v) in line.iter().filter(|e| e.1 != 0.0) {
-                by_column[c].push((r, v / top));
-            }
+        for r in 0..open.len() {
+            let top = lines.line(r).fold(0.0f64, |t, e| t.max(e.1.abs()));
+            lines
+                .line(r)
+                .for_each(|(c, v)| by_column[c].push((r, v / top)));
         }
         if let Err(Failure::Dependent(list)) = Factor::new(open.len(), &by_column) {
             out.push(Finding::Singular {
