@@ -211,10 +211,6 @@ impl Relaxation for Nonlinear {
         &self.point
     }
 
-    fn reduced(&self) -> Option<&[f64]> {
-        None
-    }
-
     fn start(&self) -> Self::Start {
         self.point.clone()
     }

@@ -317,10 +317,6 @@ impl Relaxation for Outer<'_> {
         &self.point
     }
 
-    fn reduced(&self) -> Option<&[f64]> {
-        self.linear.reduced()
-    }
-
     fn start(&self) -> Self::Start {
         self.linear.start()
     }
