@@ -167,19 +167,8 @@ pub struct Outcome {
     pub message: String,
 }
 
-/// What the solver may ask about the problem.
-pub trait Help {
-    /// Names of row i and of its variable, for the log.
-    fn name(&self, i: usize) -> String {
-        format!("{}", i + 1)
-    }
-}
-
-/// Knows nothing about the problem.
-#[derive(Debug, Default, Clone, Copy)]
-pub struct NoHelp;
-
-impl Help for NoHelp {}
+/// Names of row i and of its variable, for the log.
+pub type Names<'a> = &'a dyn Fn(usize) -> String;
 
 /// Bounds beyond this count as infinite, as in PATH and GAMS.
 pub const INFINITY: f64 = 1e20;
@@ -193,7 +182,7 @@ pub fn solve(
     problem: &mut dyn Problem,
     settings: &Settings,
     budget: &Budget,
-    help: &mut dyn Help,
+    names: Names,
 ) -> Outcome {
-    portfolio::solve(problem, settings, budget, help)
+    portfolio::solve(problem, settings, budget, names)
 }

@@ -4,17 +4,14 @@ use super::super::Ended;
 use super::super::form::{Problem, Sparse};
 use super::super::simplex::{Simplex, State};
 use super::presolve;
+use crate::solve::random::Random;
 
-struct Draw(u64);
+struct Draw(Random);
 
 impl Draw {
     /// An integer in 0 … n − 1.
     fn below(&mut self, n: u64) -> u64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 33) % n
+        (self.0.uniform() * n as f64) as u64
     }
 
     fn number(&mut self) -> f64 {
@@ -24,7 +21,7 @@ impl Draw {
 
 /// A program with a point: rows of one to four columns.
 fn drawn(seed: u64) -> Problem {
-    let mut draw = Draw(seed);
+    let mut draw = Draw(Random(seed));
     let (m, n) = (4 + draw.below(12) as usize, 4 + draw.below(12) as usize);
     let mut p = Problem::default();
     let mut rows: Vec<Vec<(usize, f64)>> = Vec::new();
