@@ -4,7 +4,10 @@ use super::model::{FEASIBLE, INTEGRAL, Mip};
 use crate::solve::lp::form::{Activity, term};
 use std::collections::{BTreeMap, VecDeque};
 
-/// How much the points of rows may cost without a gain, in entries of rows for every entry of the program.
+/// How much either value of every binary may cost, in entries of rows for every entry of the program.
+const PROBING: usize = 100;
+
+/// How much the points of rows may cost without a gain, in the same unit.
 const ENUMERATION: usize = 100;
 
 /// Points of a row that are looked at, at most; a column's values at them are the bits of a number.
@@ -160,6 +163,61 @@ impl Propagator {
                 return true;
             }
         }
+    }
+
+    /// Tightens bounds by what either value of every binary column implies. None: nothing satisfies them;
+    /// otherwise whether bounds moved.
+    pub fn probe(&mut self, mip: &Mip, lower: &mut [f64], upper: &mut [f64]) -> Option<bool> {
+        let most = self.work + PROBING * (mip.problem.rows.value.len() + 1000);
+        let is_open = |j: usize, l: &[f64], u: &[f64]| mip.integer[j] && l[j] == 0.0 && u[j] == 1.0;
+        let (mut l, mut u) = (lower.to_vec(), upper.to_vec());
+        let mut changed = false;
+        for j in 0..lower.len() {
+            if !is_open(j, lower, upper) || self.work > most {
+                continue;
+            }
+            let mut sides = [None, None];
+            for (side, found) in [0.0, 1.0].into_iter().zip(&mut sides) {
+                (l[j], u[j]) = (side, side);
+                if self.run(mip, Some(&[j]), &mut l, &mut u) {
+                    let moved = self.moved.iter().map(|&k| (k, (l[k], u[k])));
+                    *found = Some(moved.collect::<BTreeMap<_, _>>());
+                }
+                for &k in self.moved.iter().chain([&j]) {
+                    (l[k], u[k]) = (lower[k], upper[k]);
+                }
+            }
+            let implied: Vec<(usize, f64, f64)> = match sides {
+                [None, None] => return None,
+                [None, Some(_)] => vec![(j, 1.0, 1.0)],
+                [Some(_), None] => vec![(j, 0.0, 0.0)],
+                [Some(zero), Some(one)] => {
+                    let both = |(k, a): (usize, (f64, f64))| {
+                        let b = one.get(&k)?;
+                        Some((k, a.0.min(b.0), a.1.max(b.1)))
+                    };
+                    zero.into_iter().filter_map(both).collect()
+                }
+            };
+            let mut columns = Vec::new();
+            for (k, low, high) in implied {
+                if low > lower[k] || high < upper[k] {
+                    (lower[k], upper[k]) = (low.max(lower[k]), high.min(upper[k]));
+                    columns.push(k);
+                }
+            }
+            if columns.is_empty() {
+                continue;
+            }
+            changed = true;
+            if !self.run(mip, Some(&columns), lower, upper) {
+                return None;
+            }
+            for &k in self.moved.iter().chain(&columns) {
+                (l[k], u[k]) = (lower[k], upper[k]);
+            }
+        }
+        Some(changed)
     }
 
     /// Tightens bounds by what all points of an equation of binaries have in common, equation by equation, and tells

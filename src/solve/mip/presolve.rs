@@ -69,6 +69,7 @@ pub fn reduce(mip: &Mip, fixed: &[Change]) -> Option<Reduced> {
         true => definitions(&mut work, &mut idle, &stays),
         false => Vec::new(),
     };
+    let mut enumerated = false;
     for round in 0..6 {
         let (mut lower, mut upper) = (work.problem.lower.clone(), work.problem.upper.clone());
         let mut propagator = Propagator::new(&work);
@@ -77,10 +78,14 @@ pub fn reduce(mip: &Mip, fixed: &[Change]) -> Option<Reduced> {
             return None;
         }
         let mut changed = !propagator.moved.is_empty();
+        if (round == 1 || enumerated) && fixed.is_empty() {
+            changed |= propagator.probe(&work, &mut lower, &mut upper)?;
+        }
         let mut alike = Alike::new(&work, &stays);
         if round > 0 && fixed.is_empty() {
             let mut tell = |k, by, opposite| alike.add(k, by, opposite);
-            changed |= propagator.enumerate(&work, &mut lower, &mut upper, &mut tell)?;
+            enumerated = propagator.enumerate(&work, &mut lower, &mut upper, &mut tell)?;
+            changed |= enumerated;
         }
         (work.problem.lower, work.problem.upper) = (lower, upper);
         if work.held.is_empty() {
@@ -98,7 +103,7 @@ pub fn reduce(mip: &Mip, fixed: &[Change]) -> Option<Reduced> {
             changed |= !more.is_empty();
             given.extend(more);
         }
-        // The first round leaves the points of rows to the second.
+        // The first round leaves probing to the second.
         if !changed && round > 0 {
             break;
         }
