@@ -14,6 +14,8 @@ enum Dive {
     Nearest,
     /// Where rows object least.
     Locks,
+    /// Towards the best solution.
+    Guided,
     /// Up: the column that is nearest to the integer above it. Where one of many is chosen, that fixes the others.
     Up,
 }
@@ -37,6 +39,7 @@ impl<R: Relaxation> Search<'_, R> {
         } else if affordable && self.nodes.is_multiple_of(often) {
             self.dives.count += 1;
             let kind = match (self.is_poor(), self.dives.count % 3) {
+                (false, 0) => Dive::Guided,
                 (true, 0) => Dive::Up,
                 (_, 1) => Dive::Locks,
                 _ => Dive::Nearest,
@@ -143,11 +146,16 @@ impl<R: Relaxation> Search<'_, R> {
                 super::branching::Branch::Fixed(changes) => Some(vec![changes.clone(), changes]),
             };
         }
+        let guide = match (kind, &self.best) {
+            (Dive::Guided, Some((_, best))) => Some(best),
+            _ => None,
+        };
         // The smallest score wins: which column, and whether up.
         let choice = candidates.iter().map(|&(j, far)| {
             let fraction = x[j] - x[j].floor();
-            match kind {
-                Dive::Locks => {
+            match (kind, guide) {
+                (_, Some(best)) => ((x[j] - best[j]).abs(), j, best[j] > x[j]),
+                (Dive::Locks, _) => {
                     let [down, up] = self.locks(j);
                     let harmless = down == 0 || up == 0;
                     let goes_up = match down.cmp(&up) {
@@ -167,8 +175,8 @@ impl<R: Relaxation> Search<'_, R> {
                         goes_up,
                     )
                 }
-                Dive::Up => (1.0 - fraction, j, true),
-                Dive::Nearest => (far, j, fraction >= 0.5),
+                (Dive::Up, _) => (1.0 - fraction, j, true),
+                _ => (far, j, fraction >= 0.5),
             }
         });
         let (_, j, up) = choice.min_by(|a, b| a.0.total_cmp(&b.0))?;

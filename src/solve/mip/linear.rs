@@ -132,6 +132,10 @@ impl Relaxation for Linear {
         &self.simplex.values()[..self.n]
     }
 
+    fn reduced(&self) -> Option<&[f64]> {
+        Some(&self.simplex.reduced()[..self.n])
+    }
+
     fn start(&self) -> Self::Start {
         Rc::new(self.simplex.basis())
     }

@@ -211,6 +211,10 @@ impl Relaxation for Nonlinear {
         &self.point
     }
 
+    fn reduced(&self) -> Option<&[f64]> {
+        None
+    }
+
     fn start(&self) -> Self::Start {
         self.point.clone()
     }

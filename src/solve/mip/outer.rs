@@ -317,6 +317,10 @@ impl Relaxation for Outer<'_> {
         &self.point
     }
 
+    fn reduced(&self) -> Option<&[f64]> {
+        self.linear.reduced()
+    }
+
     fn start(&self) -> Self::Start {
         self.linear.start()
     }

@@ -82,6 +82,9 @@ pub trait Relaxation {
     /// The last point.
     fn x(&self) -> &[f64];
 
+    /// Reduced costs there, where the value is a bound and these say how it grows.
+    fn reduced(&self) -> Option<&[f64]>;
+
     /// Where it is now, to start from again.
     fn start(&self) -> Self::Start;
 

@@ -163,6 +163,8 @@ pub struct Search<'a, R: Relaxation> {
     pub(super) relaxation: R,
     pub(super) aim: Aim,
     pub(super) units: Units,
+    /// Bounds that hold everywhere.
+    pub(super) root: [Vec<f64>; 2],
     /// Bounds of the present node.
     pub(super) lower: Vec<f64>,
     pub(super) upper: Vec<f64>,
@@ -211,6 +213,16 @@ enum Evaluated {
     Divided(Branch),
 }
 
+/// What reduced costs did to a node.
+enum Fixed {
+    /// Nothing that its point does not satisfy.
+    Nothing,
+    /// The point is to be computed again.
+    Moved,
+    /// Nothing better is left below it.
+    Empty,
+}
+
 /// How many nodes may be divided without a value of their relaxation.
 const FAILURES: u32 = 200;
 
@@ -241,6 +253,7 @@ impl<'a, R: Relaxation> Search<'a, R> {
             relaxation,
             aim,
             units,
+            root: [lower.clone(), upper.clone()],
             lower,
             upper,
             propagator,
@@ -402,8 +415,8 @@ impl<'a, R: Relaxation> Search<'a, R> {
 
     /// Bounds of a node. False: nothing is left of it.
     fn load(&mut self, path: &Option<Rc<Path>>) -> bool {
-        self.lower.copy_from_slice(&self.mip.problem.lower);
-        self.upper.copy_from_slice(&self.mip.problem.upper);
+        self.lower.copy_from_slice(&self.root[0]);
+        self.upper.copy_from_slice(&self.root[1]);
         let mut steps = Vec::new();
         let mut next = path.as_ref();
         while let Some(p) = next {
@@ -573,6 +586,16 @@ impl<'a, R: Relaxation> Search<'a, R> {
             }
             if node.depth == 0 {
                 self.bound = self.bound.max(node.bound);
+            }
+            if resolves < 5 && !failed {
+                match self.fix_by_costs(value, node.depth == 0) {
+                    Fixed::Nothing => {}
+                    Fixed::Moved => {
+                        resolves += 1;
+                        continue;
+                    }
+                    Fixed::Empty => return Evaluated::Leaf("bound"),
+                }
             }
             if failed {
                 self.failures += 1;
@@ -749,6 +772,57 @@ impl<'a, R: Relaxation> Search<'a, R> {
         match changes.iter().all(is_zero) {
             true => Vec::new(),
             false => changes.iter().map(|c| c.column).collect(),
+        }
+    }
+
+    /// Integer columns whose reduced costs keep them from going far. What that does to the node.
+    fn fix_by_costs(&mut self, value: f64, at_root: bool) -> Fixed {
+        let room = self.cutoff() - value;
+        if !room.is_finite() {
+            return Fixed::Nothing;
+        }
+        let Some(reduced) = self.relaxation.reduced() else {
+            return Fixed::Nothing;
+        };
+        let x = self.relaxation.x();
+        let mut changes = Vec::new();
+        for (j, &d) in reduced.iter().enumerate().filter(|e| self.mip.integer[e.0]) {
+            let (l, u) = (self.lower[j], self.upper[j]);
+            if d.abs() < 1e-7 || l == u || self.mip.threshold[j] > 0.0 {
+                continue;
+            }
+            let far = (room / d.abs() + 1e-6).floor();
+            if d > 0.0 && x[j] - l < 1e-9 && l + far < u {
+                changes.push(Change {
+                    column: j,
+                    lower: l,
+                    upper: l + far,
+                });
+            } else if d < 0.0 && u - x[j] < 1e-9 && u - far > l {
+                changes.push(Change {
+                    column: j,
+                    lower: u - far,
+                    upper: u,
+                });
+            }
+        }
+        if changes.is_empty() {
+            return Fixed::Nothing;
+        }
+        let x = x.to_vec();
+        if at_root {
+            for c in &changes {
+                self.root[0][c.column] = self.root[0][c.column].max(c.lower);
+                self.root[1][c.column] = self.root[1][c.column].min(c.upper);
+            }
+        }
+        if !self.apply(&changes) {
+            return Fixed::Empty;
+        }
+        let outside = |j: &usize| x[*j] < self.lower[*j] - 1e-9 || x[*j] > self.upper[*j] + 1e-9;
+        match self.propagator.moved.iter().any(outside) {
+            true => Fixed::Moved,
+            false => Fixed::Nothing,
         }
     }
 
