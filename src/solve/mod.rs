@@ -60,7 +60,7 @@ impl Settings {
     }
 
     /// The same of a table's option, which has the default.
-    pub fn number_of(&self, table: &OptionTable, name: &str) -> f64 {
+    pub(crate) fn number_of(&self, table: &OptionTable, name: &str) -> f64 {
         let default = || table.find(name)?.default.parse().ok();
         self.number(name).or_else(default).unwrap_or(0.0)
     }

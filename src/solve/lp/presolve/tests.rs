@@ -4,14 +4,17 @@ use super::super::Ended;
 use super::super::form::{Problem, Sparse};
 use super::super::simplex::{Simplex, State};
 use super::presolve;
-use crate::solve::random::Random;
 
-struct Draw(Random);
+struct Draw(u64);
 
 impl Draw {
     /// An integer in 0 … n − 1.
     fn below(&mut self, n: u64) -> u64 {
-        (self.0.uniform() * n as f64) as u64
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 33) % n
     }
 
     fn number(&mut self) -> f64 {
@@ -19,13 +22,18 @@ impl Draw {
     }
 }
 
-/// A program with a point: rows of one to four columns.
+/// A program with a point: rows of one to four columns, some of them multiples of each other, and columns likewise.
 fn drawn(seed: u64) -> Problem {
-    let mut draw = Draw(Random(seed));
+    let mut draw = Draw(seed);
     let (m, n) = (4 + draw.below(12) as usize, 4 + draw.below(12) as usize);
     let mut p = Problem::default();
     let mut rows: Vec<Vec<(usize, f64)>> = Vec::new();
-    for _ in 0..m {
+    for i in 0..m {
+        if i > 1 && draw.below(8) == 0 {
+            let (twin, by) = (rows[i - 1].clone(), draw.number());
+            rows.push(twin.iter().map(|&(j, a)| (j, a * by)).collect());
+            continue;
+        }
         let mut row: Vec<(usize, f64)> = Vec::new();
         for _ in 0..1 + draw.below(4) {
             let j = draw.below(n as u64) as usize;
