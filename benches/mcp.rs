@@ -10,7 +10,7 @@
 
 use std::time::Instant;
 
-use bmod::solve::mcp::{NoHelp, Outcome, Problem, Settings, Status, solve};
+use bmod::solve::mcp::{Outcome, Problem, Settings, Status, solve};
 use bmod::solve::{Budget, Limits, Monitor};
 
 #[path = "../tests/common/mod.rs"]
@@ -37,7 +37,7 @@ impl Monitor for Log {
 fn logged(problem: &mut dyn Problem, settings: &Settings, log: bool) -> Outcome {
     let mut monitor = Log(Instant::now());
     let budget = Budget::new(&mut monitor, Limits::default(), log);
-    solve(problem, settings, &budget, &mut NoHelp)
+    solve(problem, settings, &budget, &|i| (i + 1).to_string())
 }
 
 /// Seconds this process has computed, whatever else the machine does; off Linux, seconds of the clock.

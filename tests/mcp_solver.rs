@@ -4,9 +4,7 @@
 //! they come from. `F` is differentiated here by central differences where it is not linear.
 
 use crate::walls::obstacle;
-use bmod::solve::mcp::{
-    EvalError, NoHelp, Outcome, Problem, Settings, Status, natural_residual, solve,
-};
+use bmod::solve::mcp::{EvalError, Outcome, Problem, Settings, Status, natural_residual, solve};
 use bmod::solve::{Budget, Limits, Monitor, Quiet};
 use proptest::prelude::*;
 
@@ -79,7 +77,7 @@ impl Model {
             self,
             &Settings::default(),
             &Budget::unlimited(&mut Quiet::default()),
-            &mut NoHelp,
+            &|i| (i + 1).to_string(),
         )
     }
 
@@ -443,7 +441,7 @@ fn many_unknowns_in_a_band() {
         &mut obstacle(10_000),
         &Settings::default(),
         &Budget::unlimited(&mut Quiet::default()),
-        &mut NoHelp,
+        &|i| (i + 1).to_string(),
     );
     assert_eq!(outcome.status, Status::Solved);
     assert!(outcome.residual <= 1e-8 && outcome.x.iter().any(|x| *x > 0.0));
@@ -466,12 +464,9 @@ impl Monitor for Impatient {
 fn limits_and_interruption() {
     let mut impatient = Impatient;
     let budget = Budget::new(&mut impatient, Limits::default(), true);
-    let interrupted = solve(
-        &mut obstacle(50),
-        &Settings::default(),
-        &budget,
-        &mut NoHelp,
-    );
+    let interrupted = solve(&mut obstacle(50), &Settings::default(), &budget, &|i| {
+        (i + 1).to_string()
+    });
     assert_eq!(interrupted.status, Status::Interrupted);
     let mut quiet = Quiet::default();
     let limits = Limits {
@@ -481,7 +476,9 @@ fn limits_and_interruption() {
     let budget = Budget::new(&mut quiet, limits, false);
     let settings = Settings::default();
     assert_eq!(
-        solve(&mut obstacle(50), &settings, &budget, &mut NoHelp).status,
+        solve(&mut obstacle(50), &settings, &budget, &|i| (i + 1)
+            .to_string())
+        .status,
         Status::TimeLimit
     );
     let settings = Settings {
@@ -493,7 +490,7 @@ fn limits_and_interruption() {
             &mut obstacle(50),
             &settings,
             &Budget::unlimited(&mut Quiet::default()),
-            &mut NoHelp
+            &|i| (i + 1).to_string()
         )
         .status,
         Status::IterationLimit

@@ -1,7 +1,7 @@
 //! Walls of blocks straight through the complementarity solver: large ones are in `benches/mcp.rs`.
 
 use crate::walls::wall;
-use bmod::solve::mcp::{NoHelp, Outcome, Settings, Status, solve};
+use bmod::solve::mcp::{Outcome, Settings, Status, solve};
 use bmod::solve::{Budget, Quiet};
 
 fn run(courses: usize, width: usize, friction: f64, associated: bool) -> Outcome {
@@ -9,7 +9,7 @@ fn run(courses: usize, width: usize, friction: f64, associated: bool) -> Outcome
         &mut wall(courses, width, friction, associated),
         &Settings::default(),
         &Budget::unlimited(&mut Quiet::default()),
-        &mut NoHelp,
+        &|i| (i + 1).to_string(),
     );
     assert_eq!(outcome.status, Status::Solved);
     assert!(outcome.residual <= 1e-9, "{}", outcome.residual);

@@ -241,29 +241,19 @@ fn is_proved_infeasible(instance: &Instance, budget: &Budget) -> Result<bool, So
     Ok(is_infeasible(&rows, budget))
 }
 
-/// What index k of a complementarity problem is called.
-type Names<'a> = &'a dyn Fn(usize) -> String;
-
-impl mcp::Help for Names<'_> {
-    fn name(&self, i: usize) -> String {
-        self(i)
-    }
-}
-
 /// Runs the complementarity solver: its outcome, and how it ended in GAMS's terms.
 fn run(
     problem: &mut dyn mcp::Problem,
-    mut names: Names,
+    names: mcp::Names,
     settings: &Settings,
     budget: &Budget,
 ) -> Result<(mcp::Outcome, SolverStatus), SolveError> {
-    let mut limits = mcp::Settings::with(&settings.options);
-    limits.strategies = settings.strategies();
+    let mut limits = mcp::Settings::new(settings);
     let left = usize::try_from(budget.iterations_left()).unwrap_or(usize::MAX);
     limits.cumulative_iteration_limit = limits.cumulative_iteration_limit.min(left);
     let seconds = limits.time_limit;
     let out = budget.within(seconds, u64::MAX, |budget| {
-        mcp::solve(problem, &limits, budget, &mut names)
+        mcp::solve(problem, &limits, budget, names)
     });
     budget.spend((out.majors + out.pivots) as u64);
     let status = match out.status {

@@ -59,6 +59,12 @@ impl Settings {
         self.option(name)?.parse().ok()
     }
 
+    /// The same of a table's option, which has the default.
+    pub(crate) fn number_of(&self, table: &OptionTable, name: &str) -> f64 {
+        let default = || table.find(name)?.default.parse().ok();
+        self.number(name).or_else(default).unwrap_or(0.0)
+    }
+
     /// The same as a switch.
     pub fn switch(&self, name: &str) -> Option<bool> {
         option::switch(&self.option(name)?)

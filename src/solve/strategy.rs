@@ -211,10 +211,6 @@ strategies! {
             "convex quadratic: tangents at the nodes of a tree over linear programs, with those of the perspective where a binary switches columns off",
             "a column and a tangent for each block of columns that the Hessians join",
             "Quesada & Grossmann 1992, Frangioni & Gentile 2006";
-        FeasibilityJump "feasibility_jump",
-            "no ordered sets or semicontinuous columns: solutions without linear programs, at the root and between plunges",
-            "a tenth of the time",
-            "Luteberget & Sartor 2023";
         OrbitalBranching "orbital_branching",
             "columns that are alike: where a binary one is branched down, so are those that permutations make of it",
             "10⁷ entries of rows, and each of them 20 times",

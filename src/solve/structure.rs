@@ -9,6 +9,7 @@
 
 use crate::autodiff::Evaluator;
 use crate::model::instance::{Instance, Relation};
+use crate::solve::lp::form::Sparse;
 
 /// Something to tell a user about the model.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,32 +32,6 @@ pub struct Block {
     pub columns: Vec<usize>,
 }
 
-/// Compressed adjacency lists.
-struct Graph {
-    start: Vec<usize>,
-    index: Vec<usize>,
-}
-
-impl Graph {
-    fn of(&self, i: usize) -> &[usize] {
-        &self.index[self.start[i]..self.start[i + 1]]
-    }
-
-    fn transposed(&self, columns: usize) -> Graph {
-        let mut start = vec![0; columns + 1];
-        self.index.iter().for_each(|&j| start[j + 1] += 1);
-        (0..columns).for_each(|j| start[j + 1] += start[j]);
-        let (mut at, mut index) = (start.clone(), vec![0; self.index.len()]);
-        for i in 0..self.start.len() - 1 {
-            for &j in self.of(i) {
-                index[at[j]] = i;
-                at[j] += 1;
-            }
-        }
-        Graph { start, index }
-    }
-}
-
 /// Looks at the model; `row_of` gives each column its row, and in a `square` system every variable that
 /// is not fixed counts as free.
 pub fn examine(instance: &Instance, row_of: &[Option<u32>], square: bool) -> Vec<Finding> {
@@ -70,11 +45,12 @@ pub fn examine(instance: &Instance, row_of: &[Option<u32>], square: bool) -> Vec
     };
     let evaluator = Evaluator::first_order(instance);
     let (start, index) = evaluator.jacobian_pattern();
-    let by_row = Graph {
+    let by_row = Sparse {
         start: start.to_vec(),
-        index: index.iter().map(|&j| j as usize).collect(),
+        index: index.to_vec(),
+        value: vec![1.0; index.len()],
     };
-    let by_column = by_row.transposed(n);
+    let by_column = by_row.transpose(n);
     let mut findings = Vec::new();
     let bounded: Vec<(usize, usize)> = (0..n)
         .filter(|&j| !square && !fixed(j) && !free(j))
@@ -87,7 +63,7 @@ pub fn examine(instance: &Instance, row_of: &[Option<u32>], square: bool) -> Vec
     let mut equation = vec![false; m];
     for (j, row) in row_of.iter().enumerate() {
         if let (Some(i), true) = (row, free(j)) {
-            equation[*i as usize] = !by_row.of(*i as usize).is_empty();
+            equation[*i as usize] = by_row.line(*i as usize).len() > 0;
         }
     }
     let rows: Vec<usize> = (0..m).filter(|&i| equation[i]).collect();
@@ -95,7 +71,7 @@ pub fn examine(instance: &Instance, row_of: &[Option<u32>], square: bool) -> Vec
         findings.push(Finding::Overdetermined(Block { rows, columns }));
     }
     let unknown: Vec<usize> = (0..n)
-        .filter(|&j| free(j) && !by_column.of(j).is_empty())
+        .filter(|&j| free(j) && by_column.line(j).len() > 0)
         .collect();
     if let Some((columns, rows)) = deficient(&by_column, &unknown, m, |_| true) {
         findings.push(Finding::Underdetermined(Block { rows, columns }));
@@ -104,24 +80,27 @@ pub fn examine(instance: &Instance, row_of: &[Option<u32>], square: bool) -> Vec
 }
 
 /// Matches every vertex of `left` with one of its neighbours; if that is impossible, the part of `left`
-/// that alternating paths reach from an unmatched vertex, and its fewer neighbours.
-fn deficient(
-    graph: &Graph,
+/// that alternating paths reach from an unmatched vertex, and its fewer neighbours. An entry of the graph counts where its number
+/// is not 0.
+pub(super) fn deficient(
+    graph: &Sparse,
     left: &[usize],
     right: usize,
     allowed: impl Fn(usize) -> bool,
 ) -> Option<(Vec<usize>, Vec<usize>)> {
     const NONE: usize = usize::MAX;
     let mut partner = vec![NONE; right];
-    let mut place = vec![NONE; graph.start.len() - 1];
+    let mut place = vec![NONE; graph.lines()];
+    let neighbours = |i: usize| {
+        graph
+            .line(i)
+            .filter(|e| e.1 != 0.0 && allowed(e.0))
+            .map(|e| e.0)
+    };
     let mut unmatched = Vec::new();
     for &i in left {
-        match graph
-            .of(i)
-            .iter()
-            .find(|&&j| allowed(j) && partner[j] == NONE)
-        {
-            Some(&j) => (partner[j], place[i]) = (i, j),
+        match neighbours(i).find(|&j| partner[j] == NONE) {
+            Some(j) => (partner[j], place[i]) = (i, j),
             None => unmatched.push(i),
         }
     }
@@ -133,8 +112,8 @@ fn deficient(
         'search: while next < queue.len() {
             let i = queue[next];
             next += 1;
-            for &j in graph.of(i) {
-                if seen[j] == search || !allowed(j) {
+            for j in neighbours(i) {
+                if seen[j] == search {
                     continue;
                 }
                 (seen[j], from[j]) = (search, i);
@@ -163,8 +142,8 @@ fn deficient(
     let (mut inside, mut touched) = (lost, vec![false; right]);
     let mut next = 0;
     while next < inside.len() {
-        for &j in graph.of(inside[next]) {
-            if allowed(j) && !touched[j] {
+        for j in neighbours(inside[next]) {
+            if !touched[j] {
                 touched[j] = true;
                 inside.push(partner[j]);
             }
@@ -179,21 +158,19 @@ fn deficient(
 mod tests {
     use super::*;
 
-    fn graph(rows: &[&[usize]]) -> Graph {
-        let mut g = Graph {
-            start: vec![0],
-            index: Vec::new(),
-        };
-        for r in rows {
-            g.index.extend_from_slice(r);
-            g.start.push(g.index.len());
+    fn graph(rows: &[&[usize]]) -> Sparse {
+        let mut graph = Sparse::new();
+        for row in rows {
+            graph.push(row.iter().map(|&j| (j, 1.0)));
         }
-        g
+        graph
     }
 
     #[test]
     fn a_matching_is_found_by_exchanges() {
         let g = graph(&[&[0, 1], &[0], &[1, 2], &[2, 3]]);
+        assert_eq!(deficient(&g, &[0, 1, 2, 3], 4, |_| true), None);
+        let g = graph(&[&[0, 1], &[1, 2], &[0], &[2, 3]]);
         assert_eq!(deficient(&g, &[0, 1, 2, 3], 4, |_| true), None);
     }
 
@@ -203,7 +180,7 @@ mod tests {
         let block = deficient(&g, &[0, 1, 2], 3, |_| true);
         assert_eq!(block, Some((vec![0, 1], vec![2])));
         // The columns: 0 and 1 stand in the third row only.
-        let block = deficient(&g.transposed(3), &[0, 1, 2], 3, |_| true);
+        let block = deficient(&g.transpose(3), &[0, 1, 2], 3, |_| true);
         assert_eq!(block, Some((vec![0, 1], vec![2])));
     }
 }

@@ -1,6 +1,7 @@
 //! What bounds imply for other bounds: rows, thresholds and ordered sets, followed until nothing moves.
 
 use super::model::{FEASIBLE, INTEGRAL, Mip};
+use crate::solve::lp::form::{Activity, term};
 use std::collections::{BTreeMap, VecDeque};
 
 /// How much either value of every binary may cost, in entries of rows for every entry of the program.
@@ -11,66 +12,6 @@ const ENUMERATION: usize = 100;
 
 /// Points of a row that are looked at, at most; a column's values at them are the bits of a number.
 const POINTS: u32 = 64;
-
-/// A row's least and largest activity over bounds, with the infinite terms counted apart.
-#[derive(Clone, Copy, Default)]
-struct Activity {
-    low: f64,
-    high: f64,
-    low_infinite: u32,
-    high_infinite: u32,
-    size: f64,
-}
-
-/// The larger end of a·\[l, u\].
-fn top(a: f64, l: f64, u: f64) -> f64 {
-    if a > 0.0 { a * u } else { a * l }
-}
-
-impl Activity {
-    /// Of a row over these bounds.
-    fn of(row: impl Iterator<Item = (usize, f64)>, lower: &[f64], upper: &[f64]) -> Self {
-        let mut s = Self::default();
-        for (j, a) in row {
-            let high = top(a, lower[j], upper[j]);
-            let low = -top(-a, lower[j], upper[j]);
-            match low.is_finite() {
-                true => s.low += low,
-                false => s.low_infinite += 1,
-            }
-            match high.is_finite() {
-                true => s.high += high,
-                false => s.high_infinite += 1,
-            }
-            let larger = |v: f64| if v.is_finite() { v.abs() } else { 0.0 };
-            s.size = s.size.max(larger(low)).max(larger(high));
-        }
-        s
-    }
-
-    /// The least activity.
-    fn least(&self) -> f64 {
-        if self.low_infinite > 0 {
-            f64::NEG_INFINITY
-        } else {
-            self.low
-        }
-    }
-
-    /// The largest activity.
-    fn most(&self) -> f64 {
-        if self.high_infinite > 0 {
-            f64::INFINITY
-        } else {
-            self.high
-        }
-    }
-
-    /// What rounding may have done to it.
-    fn slack(&self) -> f64 {
-        FEASIBLE * self.size.max(1.0)
-    }
-}
 
 /// What columns are at the points of a row.
 struct Points {
@@ -370,11 +311,13 @@ impl Propagator {
         upper: &mut [f64],
     ) -> bool {
         let at = Activity::of(row.clone(), lower, upper);
-        if at.least() > most + at.slack() || at.most() < least - at.slack() {
+        // What rounding may have done.
+        let slack = FEASIBLE * at.size.max(1.0);
+        if at.low() > most + slack || at.high() < least - slack {
             return false;
         }
-        let idle_high = most.is_infinite() || at.most() <= most || at.low_infinite > 1;
-        let idle_low = least.is_infinite() || at.least() >= least || at.high_infinite > 1;
+        let idle_high = most.is_infinite() || at.high() <= most || at.endless[0] > 1;
+        let idle_low = least.is_infinite() || at.low() >= least || at.endless[1] > 1;
         if idle_high && idle_low {
             return true;
         }
@@ -391,19 +334,12 @@ impl Propagator {
                     new_l = new_l.max(value);
                 }
             };
-            if !idle_high {
-                let own = -top(-a, l, u);
-                let (own, infinite) = if own.is_finite() { (own, 0) } else { (0.0, 1) };
-                if at.low_infinite == infinite {
-                    limit((most - (at.low - own)) / a, a > 0.0);
-                }
+            let [low, high] = at.without(term(a, [l, u]));
+            if !idle_high && low.is_finite() {
+                limit((most - low) / a, a > 0.0);
             }
-            if !idle_low {
-                let own = top(a, l, u);
-                let (own, infinite) = if own.is_finite() { (own, 0) } else { (0.0, 1) };
-                if at.high_infinite == infinite {
-                    limit((least - (at.high - own)) / a, a < 0.0);
-                }
+            if !idle_low && high.is_finite() {
+                limit((least - high) / a, a < 0.0);
             }
             if mip.integer[j] {
                 new_l = (new_l - INTEGRAL).ceil();

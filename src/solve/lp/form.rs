@@ -452,3 +452,71 @@ fn definition(instance: &Instance) -> Option<Definition> {
         coefficient,
     })
 }
+/// The smallest and the largest value of a sum: the finite part, how many terms have no end, and the largest size of a
+/// term.
+#[derive(Clone, Copy, Default)]
+pub struct Activity {
+    ends: [f64; 2],
+    /// How many of the terms have no end.
+    pub endless: [u32; 2],
+    /// Of the finite ones.
+    pub size: f64,
+}
+
+impl Activity {
+    /// Of terms whose columns are within these bounds.
+    pub fn of(terms: impl Iterator<Item = (usize, f64)>, lower: &[f64], upper: &[f64]) -> Self {
+        let mut out = Self::default();
+        for (j, a) in terms {
+            for (k, v) in term(a, [lower[j], upper[j]]).into_iter().enumerate() {
+                if v.is_finite() {
+                    out.ends[k] += v;
+                    out.size = out.size.max(v.abs());
+                } else {
+                    out.endless[k] += 1;
+                }
+            }
+        }
+        out
+    }
+
+    /// The smallest value.
+    pub fn low(&self) -> f64 {
+        if self.endless[0] > 0 {
+            f64::NEG_INFINITY
+        } else {
+            self.ends[0]
+        }
+    }
+
+    /// The largest value.
+    pub fn high(&self) -> f64 {
+        if self.endless[1] > 0 {
+            f64::INFINITY
+        } else {
+            self.ends[1]
+        }
+    }
+
+    /// The smallest and the largest value without a term.
+    pub fn without(&self, term: [f64; 2]) -> [f64; 2] {
+        let infinite = [f64::NEG_INFINITY, f64::INFINITY];
+        std::array::from_fn(|k| {
+            let own = u32::from(!term[k].is_finite());
+            match self.endless[k] - own {
+                0 if own == 1 => self.ends[k],
+                0 => self.ends[k] - term[k],
+                _ => infinite[k],
+            }
+        })
+    }
+}
+
+/// The ends of a·x for x between bounds.
+pub fn term(a: f64, [l, u]: [f64; 2]) -> [f64; 2] {
+    if a > 0.0 {
+        [a * l, a * u]
+    } else {
+        [a * u, a * l]
+    }
+}

@@ -54,6 +54,19 @@ pub enum Ended {
 }
 
 impl Ended {
+    /// What the solver status says.
+    pub(super) fn status(&self) -> SolverStatus {
+        match self {
+            Self::Solved | Self::Infeasible(_) | Self::Unbounded(_) => {
+                SolverStatus::NormalCompletion
+            }
+            Self::Iterations => SolverStatus::IterationInterrupt,
+            Self::Time | Self::TooLarge(_) => SolverStatus::ResourceInterrupt,
+            Self::Interrupted => SolverStatus::UserInterrupt,
+            Self::Failed => SolverStatus::TerminatedBySolver,
+        }
+    }
+
     /// For the log.
     fn word(&self) -> &'static str {
         match self {
@@ -263,16 +276,12 @@ fn solve(
     let pivots = answer.engine.take().and_then(|e| e.pivots);
     log_pivots(&pivots.unwrap_or_default(), &form, &scaling, budget);
     budget.spend(answer.iterations);
-    let (claim, status) = match answer.ended {
+    let (claim, status) = match &answer.ended {
         Ended::Solved if answer.almost => (Claim::Unfinished, SolverStatus::TerminatedBySolver),
-        Ended::Solved => (Claim::Solved, SolverStatus::NormalCompletion),
-        Ended::Infeasible(_) => (Claim::Infeasible, SolverStatus::NormalCompletion),
-        Ended::Unbounded(_) => (Claim::Unbounded, SolverStatus::NormalCompletion),
-        Ended::Iterations => (Claim::Unfinished, SolverStatus::IterationInterrupt),
-        Ended::Time => (Claim::Unfinished, SolverStatus::ResourceInterrupt),
-        Ended::Interrupted => (Claim::Unfinished, SolverStatus::UserInterrupt),
-        Ended::TooLarge(_) => (Claim::Unfinished, SolverStatus::ResourceInterrupt),
-        Ended::Failed => (Claim::Unfinished, SolverStatus::TerminatedBySolver),
+        Ended::Solved => (Claim::Solved, answer.ended.status()),
+        Ended::Infeasible(_) => (Claim::Infeasible, answer.ended.status()),
+        Ended::Unbounded(_) => (Claim::Unbounded, answer.ended.status()),
+        other => (Claim::Unfinished, other.status()),
     };
     let message = match &answer.ended {
         Ended::TooLarge(why) => Some(why.clone()),

@@ -9,7 +9,7 @@ fn worst(run: &Run, point: &Point) -> String {
         .get(point.worst)
         .copied()
         .unwrap_or(point.worst);
-    run.help.name(index)
+    (run.names)(index)
 }
 
 /// Parts of the log that can be left out.

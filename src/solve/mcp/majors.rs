@@ -37,6 +37,8 @@ const LARGE: usize = 1000;
 /// to the least that counts.
 const PROX_FIRST: f64 = 1e-7;
 const PROX_MIN: f64 = 1e-12;
+/// Full steps accepted in a row without a test on the merit function.
+const WATCHDOG: usize = 10;
 /// Major iterations without a notable fall of the residual before the run is called stuck.
 const STAGNATION: usize = 30;
 /// Pivots without that, at least and times n: problems without a solution have many and long paths.
@@ -442,8 +444,7 @@ impl Majors {
         let next = run.point(candidate.y);
         if let Some(next) = next {
             let monotone = next.merit <= (1.0 - ARMIJO) * reference;
-            let watched =
-                self.untested < run.settings.watchdog_limit && next.merit <= 1e8 * reference;
+            let watched = self.untested < WATCHDOG && next.merit <= 1e8 * reference;
             if monotone || watched {
                 let kind = if monotone { 'M' } else { 'O' };
                 log::major_line(run, &next, pivots, end, 1.0, prox, 1.0, kind, tries);

@@ -98,8 +98,6 @@ pub struct Settings {
     /// Proximal term the first major iteration starts with. Default 0: it comes into play only when
     /// a linear subproblem without it has no solution.
     pub proximal_perturbation: f64,
-    /// Full steps accepted in a row without a test on the merit function. Default 10.
-    pub watchdog_limit: usize,
     /// Memory of the nonmonotone reference value. Default 10.
     pub nms_memory_size: usize,
     /// Random restarts, after all methods failed from the given start. Default: up to 30, while they are cheap or have cost
@@ -107,8 +105,6 @@ pub struct Settings {
     pub restart_limit: Option<usize>,
     /// Seconds. Default: no limit but the budget's.
     pub time_limit: f64,
-    /// Whether random restarts are made when all else fails. Default true.
-    pub fallbacks: bool,
     /// Whether the log, if one is wanted, has the iterations of crashes. Default true.
     pub output_crash_iterations: bool,
     /// Whether it has the major iterations. Default true.
@@ -120,31 +116,6 @@ pub struct Settings {
     pub output_final_statistics: bool,
     /// Which fallbacks and special treatments run. Default: all.
     pub strategies: Strategies,
-}
-
-impl Default for Settings {
-    fn default() -> Self {
-        Settings {
-            convergence_tolerance: 1e-8,
-            acceptable_tolerance: 1e-6,
-            crash_method: true,
-            crash_iteration_limit: 50,
-            major_iteration_limit: 120,
-            cumulative_iteration_limit: 10_000_000,
-            minor_iteration_limit: 0,
-            proximal_perturbation: 0.0,
-            watchdog_limit: 10,
-            nms_memory_size: 10,
-            restart_limit: None,
-            time_limit: f64::INFINITY,
-            fallbacks: true,
-            output_crash_iterations: true,
-            output_major_iterations: true,
-            output_minor_iterations: true,
-            output_final_statistics: true,
-            strategies: Strategies::default(),
-        }
-    }
 }
 
 /// How a run ended.
@@ -196,19 +167,8 @@ pub struct Outcome {
     pub message: String,
 }
 
-/// What the solver may ask about the problem.
-pub trait Help {
-    /// Names of row i and of its variable, for the log.
-    fn name(&self, i: usize) -> String {
-        format!("{}", i + 1)
-    }
-}
-
-/// Knows nothing about the problem.
-#[derive(Debug, Default, Clone, Copy)]
-pub struct NoHelp;
-
-impl Help for NoHelp {}
+/// Names of row i and of its variable, for the log.
+pub type Names<'a> = &'a dyn Fn(usize) -> String;
 
 /// Bounds beyond this count as infinite, as in PATH and GAMS.
 pub const INFINITY: f64 = 1e20;
@@ -222,7 +182,7 @@ pub fn solve(
     problem: &mut dyn Problem,
     settings: &Settings,
     budget: &Budget,
-    help: &mut dyn Help,
+    names: Names,
 ) -> Outcome {
-    portfolio::solve(problem, settings, budget, help)
+    portfolio::solve(problem, settings, budget, names)
 }

@@ -1,7 +1,7 @@
 //! Options of the complementarity solver, by PATH's names where the meaning is PATH's.
 
 use super::Settings;
-use crate::model::option::{Kind, OptionTable, row, switch};
+use crate::model::option::{Kind, OptionTable, row};
 
 const LIMIT: Kind = Kind::Whole(0.0, 1e15);
 
@@ -46,37 +46,36 @@ pub const OPTIONS: OptionTable = OptionTable {
 };
 
 impl Settings {
-    /// The defaults with these options, whose values the table has passed.
-    pub fn with(options: &[(String, String)]) -> Self {
-        let mut s = Self::default();
-        for (name, value) in options {
-            let yes = switch(value).unwrap_or(true);
-            let number = value.parse::<f64>().unwrap_or(0.0);
-            let whole = number.min(1e15) as usize;
-            match name.to_lowercase().as_str() {
-                "crash_method" => s.crash_method = !value.eq_ignore_ascii_case("none"),
-                "output" => {
-                    s.output_crash_iterations = yes;
-                    s.output_major_iterations = yes;
-                    s.output_minor_iterations = yes;
-                    s.output_final_statistics = yes;
-                }
-                "output_crash_iterations" => s.output_crash_iterations = yes,
-                "output_major_iterations" => s.output_major_iterations = yes,
-                "output_minor_iterations" => s.output_minor_iterations = yes,
-                "output_final_statistics" => s.output_final_statistics = yes,
-                "convergence_tolerance" => s.convergence_tolerance = number,
-                "proximal_perturbation" => s.proximal_perturbation = number,
-                "time_limit" => s.time_limit = number,
-                "crash_iteration_limit" => s.crash_iteration_limit = whole,
-                "major_iteration_limit" => s.major_iteration_limit = whole,
-                "cumulative_iteration_limit" => s.cumulative_iteration_limit = whole,
-                "minor_iteration_limit" => s.minor_iteration_limit = whole,
-                "nms_memory_size" => s.nms_memory_size = whole,
-                "restart_limit" => s.restart_limit = Some(whole),
-                _ => {}
-            }
+    /// What these ask for, whose values the table has passed.
+    pub fn new(asked: &crate::solve::Settings) -> Self {
+        let number = |name| asked.number_of(&OPTIONS, name);
+        let whole = |name| number(name).min(1e15) as usize;
+        let restarts = asked.number("restart_limit");
+        let all = asked.switch("output").unwrap_or(true);
+        let shown = |name| asked.switch(name).unwrap_or(all);
+        Self {
+            convergence_tolerance: number("convergence_tolerance"),
+            acceptable_tolerance: 1e-6,
+            crash_method: asked.option("crash_method").is_none_or(|m| m != "none"),
+            crash_iteration_limit: whole("crash_iteration_limit"),
+            major_iteration_limit: whole("major_iteration_limit"),
+            cumulative_iteration_limit: whole("cumulative_iteration_limit"),
+            minor_iteration_limit: whole("minor_iteration_limit"),
+            proximal_perturbation: number("proximal_perturbation"),
+            nms_memory_size: whole("nms_memory_size"),
+            restart_limit: restarts.map(|r| r.min(1e15) as usize),
+            time_limit: number("time_limit"),
+            output_crash_iterations: shown("output_crash_iterations"),
+            output_major_iterations: shown("output_major_iterations"),
+            output_minor_iterations: shown("output_minor_iterations"),
+            output_final_statistics: shown("output_final_statistics"),
+            strategies: asked.strategies(),
         }
-        s
+    }
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self::new(&crate::solve::Settings::default())
     }
 }

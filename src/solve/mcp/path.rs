@@ -666,7 +666,7 @@ impl<'a> Path<'a> {
 #[cfg(test)]
 mod tests {
     use super::super::factor::Builder;
-    use super::super::{EvalError, NoHelp, Problem, Settings};
+    use super::super::{EvalError, Problem, Settings};
     use super::*;
     use crate::solve::{Budget, Quiet};
     use feral::SparseColMatrix;
@@ -780,10 +780,10 @@ mod tests {
                 cover,
                 tolerance: HARRIS,
             };
-            let (settings, mut nothing, mut help) = (Settings::default(), Nothing, NoHelp);
+            let (settings, mut nothing) = (Settings::default(), Nothing);
             let mut quiet = Quiet::default();
             let budget = Budget::unlimited(&mut quiet);
-            let mut run = Run::new(&mut nothing, &settings, &budget, &mut help);
+            let mut run = Run::new(&mut nothing, &settings, &budget, &|_| String::new());
             let mut solved = false;
             for limit in 1..200 {
                 let mut path = Path::new(&problem, &start, 3);
@@ -825,10 +825,10 @@ mod tests {
             cover: true,
             tolerance: HARRIS,
         };
-        let (settings, mut nothing, mut help) = (Settings::default(), Nothing, NoHelp);
+        let (settings, mut nothing) = (Settings::default(), Nothing);
         let mut quiet = Quiet::default();
         let budget = Budget::unlimited(&mut quiet);
-        let mut run = Run::new(&mut nothing, &settings, &budget, &mut help);
+        let mut run = Run::new(&mut nothing, &settings, &budget, &|_| String::new());
         let result = follow(&mut run, &problem, &start, 100, 1).expect("no limit on time");
         assert_eq!(result.end, PathEnd::Ray);
         assert!(run.pivots <= 3);

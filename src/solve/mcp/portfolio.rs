@@ -9,7 +9,7 @@ use super::majors::{Crash, INTERIOR, majors};
 use super::merit::natural_residual;
 use super::random::Random;
 use super::run::{Point, Run, Stop, bound};
-use super::{Help, Outcome, Problem, Settings, Status};
+use super::{Names, Outcome, Problem, Settings, Status};
 use crate::solve::Budget;
 use crate::solve::strategy::Strategy;
 
@@ -18,7 +18,7 @@ pub(super) fn solve(
     problem: &mut dyn Problem,
     settings: &Settings,
     budget: &Budget,
-    help: &mut dyn Help,
+    names: Names,
 ) -> Outcome {
     if let Some(outcome) = invalid(problem) {
         return outcome;
@@ -35,7 +35,7 @@ pub(super) fn solve(
         budget.log(&line);
     }
     let original = reduced.kept.clone();
-    let mut run = Run::new(&mut reduced, settings, budget, &mut *help);
+    let mut run = Run::new(&mut reduced, settings, budget, names);
     run.original = original;
     let (end, restarts) = search(&mut run);
     let mut outcome = Outcome {
@@ -63,11 +63,11 @@ pub(super) fn solve(
     if let (Some(error), true) = (error, outcome.status == Status::EvaluationFailed) {
         let at = error
             .row
-            .map_or(String::new(), |row| format!("row {}: ", help.name(row)));
+            .map_or(String::new(), |row| format!("row {}: ", names(row)));
         outcome.message = format!("{at}{}", error.message);
     }
     if statistics {
-        let at = worst.map_or(String::new(), |i| format!(" ({})", help.name(i)));
+        let at = worst.map_or(String::new(), |i| format!(" ({})", names(i)));
         let line = format!(
             "{:?}: residual {:.2e}{at}; majors {}, pivots {}, crash {}, factorisations {}",
             outcome.status,
@@ -153,8 +153,7 @@ fn attempt(run: &mut Run, restarts: &mut usize) -> Result<(), Stop> {
         }
     }
     let acceptable = run.settings.acceptable_tolerance;
-    if !run.settings.fallbacks
-        || run.best.as_ref().is_some_and(|b| b.residual <= acceptable)
+    if run.best.as_ref().is_some_and(|b| b.residual <= acceptable)
         || !run.settings.strategies.run(Strategy::RandomRestarts)
     {
         return Ok(());

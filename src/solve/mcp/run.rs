@@ -5,7 +5,7 @@ use feral::SparseColMatrix;
 
 use super::factor::Fill;
 use super::merit::{merit, natural_residual};
-use super::{EvalError, Help, INFINITY, Problem, Settings};
+use super::{EvalError, INFINITY, Names, Problem, Settings};
 pub(super) use crate::solve::budget::Stop;
 use crate::solve::{Budget, Progress};
 
@@ -51,7 +51,7 @@ pub(super) struct Run<'a, 'm> {
     pub(super) problem: &'a mut dyn Problem,
     pub(super) settings: &'a Settings,
     pub(super) budget: &'a Budget<'m>,
-    pub(super) help: &'a mut dyn Help,
+    pub(super) names: Names<'a>,
     pub(super) n: usize,
     pub(super) lower: Vec<f64>,
     pub(super) upper: Vec<f64>,
@@ -89,7 +89,7 @@ impl<'a, 'm> Run<'a, 'm> {
         problem: &'a mut dyn Problem,
         settings: &'a Settings,
         budget: &'a Budget<'m>,
-        help: &'a mut dyn Help,
+        names: Names<'a>,
     ) -> Self {
         let n = problem.n();
         let fill = {
@@ -102,7 +102,7 @@ impl<'a, 'm> Run<'a, 'm> {
             problem,
             settings,
             budget,
-            help,
+            names,
             n,
             lower,
             upper,

@@ -117,7 +117,6 @@ pub(super) fn search_linear(mip: &Mip, aim: Aim, begin: Begin, control: &mut Con
         aim,
         units,
         start: begin.start.map(inner),
-        settings: begin.settings,
     };
     let mut found = match begin.convex {
         None => explore.run(linear, control),
@@ -176,7 +175,6 @@ struct Explore<'e> {
     units: Units,
     start: Option<Vec<f64>>,
     symmetry: Option<&'e Symmetry>,
-    settings: Option<&'e Settings>,
 }
 
 impl Explore<'_> {
@@ -186,7 +184,6 @@ impl Explore<'_> {
         };
         let mut search = Search::new(self.mip, relaxation, self.aim, self.units);
         search.neighbourhood = Some(&near);
-        search.settings = self.settings;
         search.symmetry = self.symmetry;
         if let Some(x) = self.start {
             search.offer(&x, control);

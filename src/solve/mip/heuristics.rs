@@ -31,12 +31,10 @@ impl<R: Relaxation> Search<'_, R> {
         let often = if self.is_poor() { 5 } else { 40 };
         if root {
             self.dive(Dive::Locks, x, control);
-            if self.is_poor() {
-                self.dive(Dive::Nearest, x, control);
-            }
-            self.jump(x, control);
-            if self.is_poor() {
-                self.dive(Dive::Up, x, control);
+            for kind in [Dive::Nearest, Dive::Up] {
+                if self.is_poor() {
+                    self.dive(kind, x, control);
+                }
             }
         } else if affordable && self.nodes.is_multiple_of(often) {
             self.dives.count += 1;

@@ -12,7 +12,6 @@ pub mod conflict;
 pub mod cuts;
 mod driver;
 mod heuristics;
-mod jump;
 pub mod linear;
 pub mod nonlinear;
 mod outer;
@@ -28,8 +27,8 @@ use super::backend::{About, Backend, Replied, Reply, Supports, Task, Terms};
 use super::bridge::binaries::{Replaced, without_binary_products};
 use super::bridge::squares::with_squares;
 use super::discrete::{Mip, model, propagate};
+use super::lp;
 use super::lp::form::Form;
-use super::lp::{self, Ended};
 use super::nlp::convex::{Shape, shape};
 use super::strategy::Strategy;
 use super::{Budget, Claim, Outcome, Settings, SolveError, SolverStatus};
@@ -261,13 +260,11 @@ pub(super) fn concluded(task: &Task, found: Found, settings: &Settings, budget: 
         ),
         () => None,
     };
-    outcome.status = match found.end {
+    outcome.status = match &found.end {
         End::Complete if found.incomplete => SolverStatus::TerminatedBySolver,
         End::Complete | End::Gap | End::Unbounded => SolverStatus::NormalCompletion,
-        End::Stopped(Ended::Time) => SolverStatus::ResourceInterrupt,
-        End::Stopped(Ended::Iterations) => SolverStatus::IterationInterrupt,
-        End::Stopped(Ended::Interrupted) => SolverStatus::UserInterrupt,
-        _ => SolverStatus::TerminatedBySolver,
+        End::Stopped(why) => why.status(),
+        End::Nodes => SolverStatus::TerminatedBySolver,
     };
     let shown = match (outcome.claim, instance.objective) {
         (Claim::Solved, Some(o)) => outcome.level[o.column as usize],

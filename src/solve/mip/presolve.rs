@@ -71,14 +71,13 @@ pub fn reduce(mip: &Mip, fixed: &[Change]) -> Option<Reduced> {
     };
     let mut enumerated = false;
     for round in 0..6 {
-        let mut changed = singletons(&mut work, &mut idle)?;
         let (mut lower, mut upper) = (work.problem.lower.clone(), work.problem.upper.clone());
         let mut propagator = Propagator::new(&work);
         propagator.continuous = round < 2;
         if !propagator.run(&work, None, &mut lower, &mut upper) {
             return None;
         }
-        changed |= !propagator.moved.is_empty();
+        let mut changed = !propagator.moved.is_empty();
         if (round == 1 || enumerated) && fixed.is_empty() {
             changed |= propagator.probe(&work, &mut lower, &mut upper)?;
         }
@@ -95,7 +94,6 @@ pub fn reduce(mip: &Mip, fixed: &[Change]) -> Option<Reduced> {
             given.extend(more);
         }
         changed |= rows(&mut work, &mut idle);
-        changed |= dual_fixing(&mut work, &idle, &stays);
         // Rows that come later know the program's columns.
         if work.held.is_empty() {
             let more = pairs(&mut work, &mut idle, &stays)?;
@@ -178,48 +176,6 @@ fn is_indivisible(mip: &Mip, row: usize) -> bool {
     let coefficients = p.rows.line(row).map(|(_, a)| a.abs() as u64);
     let divisor = coefficients.fold(0, greatest) as f64;
     divisor > 0.0 && (side - (side / divisor).round() * divisor).abs() > 1e-6
-}
-
-/// Rows of one column become bounds. None: they cross.
-fn singletons(mip: &mut Mip, idle: &mut [bool]) -> Option<bool> {
-    let mut changed = false;
-    for (i, idle) in idle.iter_mut().enumerate() {
-        if *idle {
-            continue;
-        }
-        let p = &mut mip.problem;
-        let open = |&(j, a): &(usize, f64)| a != 0.0 && p.lower[j] < p.upper[j];
-        let mut entries = p.rows.line(i).filter(open);
-        let (Some((j, a)), None) = (entries.next(), entries.next()) else {
-            continue;
-        };
-        let rest: f64 = p
-            .rows
-            .line(i)
-            .filter(|e| e.0 != j)
-            .map(|(k, b)| b * p.lower[k])
-            .sum();
-        let ends = [(p.row_lower[i] - rest) / a, (p.row_upper[i] - rest) / a];
-        let (mut l, mut u) = if a > 0.0 {
-            (ends[0], ends[1])
-        } else {
-            (ends[1], ends[0])
-        };
-        if mip.integer[j] {
-            (l, u) = ((l - FEASIBLE).ceil(), (u + FEASIBLE).floor());
-        }
-        if mip.threshold[j] > 0.0 {
-            continue;
-        }
-        let (l, u) = (l.max(p.lower[j]), u.min(p.upper[j]));
-        if l > u + FEASIBLE * l.abs().max(1.0) {
-            return None;
-        }
-        (p.lower[j], p.upper[j]) = if l > u { (u, u) } else { (l, u) };
-        *idle = true;
-        changed = true;
-    }
-    Some(changed)
 }
 
 /// Equations of two columns: one of them is put in for the other. None: their bounds contradict each other.
@@ -564,36 +520,6 @@ fn rows(mip: &mut Mip, idle: &mut [bool]) -> bool {
             }
         }
         p.columns = p.rows.transpose(p.cost.len());
-    }
-    changed
-}
-
-/// Columns that neither rows nor costs keep from a bound go there.
-fn dual_fixing(mip: &mut Mip, idle: &[bool], stays: &[bool]) -> bool {
-    let mut changed = false;
-    let p = &mut mip.problem;
-    for (j, stays) in stays.iter().enumerate() {
-        if p.lower[j] == p.upper[j] || *stays {
-            continue;
-        }
-        let (mut up, mut down) = (0, 0);
-        for (i, a) in p.columns.line(j).filter(|e| !idle[e.0]) {
-            let blocks = [p.row_lower[i].is_finite(), p.row_upper[i].is_finite()];
-            let [low, high] = if a > 0.0 {
-                blocks
-            } else {
-                [blocks[1], blocks[0]]
-            };
-            down += usize::from(low);
-            up += usize::from(high);
-        }
-        if p.cost[j] >= 0.0 && down == 0 && p.lower[j].is_finite() {
-            p.upper[j] = p.lower[j];
-            changed = true;
-        } else if p.cost[j] <= 0.0 && up == 0 && p.upper[j].is_finite() {
-            p.lower[j] = p.upper[j];
-            changed = true;
-        }
     }
     changed
 }

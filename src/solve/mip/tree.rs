@@ -15,8 +15,8 @@ use super::model::{Change, INTEGRAL, Mip, Units};
 use super::propagate::Propagator;
 use super::relaxation::{Control, Relaxation, Solved};
 use super::symmetry::Symmetry;
+use crate::solve::Progress;
 use crate::solve::lp::Ended;
-use crate::solve::{Progress, Settings};
 use std::collections::BinaryHeap;
 use std::rc::Rc;
 
@@ -187,8 +187,6 @@ pub struct Search<'a, R: Relaxation> {
     pub neighbourhood: Option<Neighbourhood<'a>>,
     /// Permutations that leave the program as it is.
     pub(super) symmetry: Option<&'a Symmetry>,
-    /// What may be left out; None: all that may.
-    pub settings: Option<&'a Settings>,
     pub(super) dives: Dives,
     next_log: f64,
     /// Nodes made.
@@ -239,10 +237,6 @@ pub(super) struct Dives {
     pub last_near: f64,
     /// How many there were.
     pub count: u64,
-    /// Walks of feasibility jump, their work, and the number of nodes at which the next is due.
-    pub jumps: u64,
-    pub jumped: u64,
-    pub next_jump: u64,
 }
 
 impl<'a, R: Relaxation> Search<'a, R> {
@@ -272,7 +266,6 @@ impl<'a, R: Relaxation> Search<'a, R> {
             incomplete: false,
             neighbourhood: None,
             symmetry: None,
-            settings: None,
             dives: Dives::default(),
             next_log: 0.0,
             made: 0,
@@ -379,7 +372,6 @@ impl<'a, R: Relaxation> Search<'a, R> {
                 self.open.push(node);
                 return End::Nodes;
             }
-            self.jump_again(control);
             if let Some(end) = self.plunge(node, control) {
                 return end;
             }

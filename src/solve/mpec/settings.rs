@@ -1,6 +1,6 @@
 //! Options of the solver for programs with equilibrium constraints.
 
-use crate::model::option::{Kind, OptionTable, row, switch};
+use crate::model::option::{Kind, OptionTable, row};
 use crate::solve::Settings;
 
 /// Which way to go.
@@ -50,48 +50,31 @@ pub struct Options {
     pub bound: Bound,
 }
 
-impl Default for Options {
-    fn default() -> Self {
-        Self {
-            method: Method::Auto,
-            aggregate: false,
-            mu: None,
-            factor: None,
-            last: 1e-8,
-            starts: 4,
-            swaps: false,
-            nodes: 300,
-            bound: Bound::None,
-        }
-    }
-}
-
 impl Options {
-    /// Reads them; the table has passed their values.
-    pub fn new(settings: &Settings) -> Self {
-        let mut out = Self::default();
-        for (name, value) in settings.of(&OPTIONS) {
-            let text = value.to_lowercase();
-            let number = text.parse::<f64>().unwrap_or(0.0);
-            match (name.to_lowercase().as_str(), text.as_str()) {
-                ("mpec_method", "auto") => out.method = Method::Auto,
-                ("mpec_method", "relaxation") => out.method = Method::Relaxation,
-                ("mpec_method", "pieces") => out.method = Method::Pieces,
-                ("mpec_method", _) => out.method = Method::Check,
-                ("mpec_relaxation", text) => out.aggregate = text == "aggregate",
-                ("mpec_swaps", text) => out.swaps = switch(text).unwrap_or(false),
-                ("mpec_bound", "none" | "no") => out.bound = Bound::None,
-                ("mpec_bound", "quick" | "yes") => out.bound = Bound::Quick,
-                ("mpec_bound", _) => out.bound = Bound::Seconds(number),
-                ("mpec_mu", _) => out.mu = Some(number),
-                ("mpec_mu_end", _) => out.last = number,
-                ("mpec_factor", _) => out.factor = Some(number),
-                ("mpec_starts", _) => out.starts = number as usize,
-                ("mpec_nodes", _) => out.nodes = number as usize,
-                _ => {}
-            }
+    /// What these ask for, whose values the table has passed.
+    pub fn new(asked: &Settings) -> Self {
+        let word = |name| asked.option(name).unwrap_or_default();
+        let number = |name| asked.number_of(&OPTIONS, name);
+        Self {
+            method: match word("mpec_method").as_str() {
+                "" | "auto" => Method::Auto,
+                "relaxation" => Method::Relaxation,
+                "pieces" => Method::Pieces,
+                _ => Method::Check,
+            },
+            aggregate: word("mpec_relaxation") == "aggregate",
+            mu: asked.number("mpec_mu"),
+            factor: asked.number("mpec_factor"),
+            last: number("mpec_mu_end"),
+            starts: number("mpec_starts") as usize,
+            swaps: asked.switch("mpec_swaps").unwrap_or(false),
+            nodes: number("mpec_nodes") as usize,
+            bound: match word("mpec_bound").as_str() {
+                "" | "none" | "no" => Bound::None,
+                "quick" | "yes" => Bound::Quick,
+                _ => Bound::Seconds(number("mpec_bound")),
+            },
         }
-        out
     }
 }
 

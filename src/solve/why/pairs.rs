@@ -11,8 +11,10 @@ use super::point::{largest, no_value};
 use super::{FEW, Finding};
 use crate::autodiff::Evaluator;
 use crate::model::instance::Instance;
+use crate::solve::lp::form::Sparse;
 use crate::solve::lp::simplex::factor::{Entries, Factor, Failure};
 use crate::solve::pairing::match_rows;
+use crate::solve::structure::deficient;
 
 /// All findings about pairs at a point.
 pub(super) fn findings(instance: &Instance, square: bool, x: &[f64]) -> Vec<Finding> {
@@ -58,27 +60,24 @@ pub(super) fn findings(instance: &Instance, square: bool, x: &[f64]) -> Vec<Find
     for (k, &(_, j)) in open.iter().enumerate() {
         place[j] = k;
     }
-    let lines: Vec<Entries> = open
-        .iter()
-        .map(|&(i, _)| {
-            (start[i]..start[i + 1])
-                .filter(|&k| place[column[k] as usize] != usize::MAX)
-                .map(|k| (place[column[k] as usize], values[k]))
-                .collect()
-        })
-        .collect();
-    if let Some((rows, columns)) = short_of_columns(&lines) {
+    let mut lines = Sparse::new();
+    for &(i, _) in &open {
+        let entries = (start[i]..start[i + 1]).map(|k| (place[column[k] as usize], values[k]));
+        lines.push(entries.filter(|e| e.0 != usize::MAX && e.1 != 0.0));
+    }
+    let all: Vec<usize> = (0..open.len()).collect();
+    if let Some((rows, columns)) = deficient(&lines, &all, open.len(), |_| true) {
         out.push(Finding::Structural {
             rows: rows.iter().take(FEW).map(|&k| open[k].0).collect(),
             columns: columns.iter().take(FEW).map(|&k| open[k].1).collect(),
         });
     } else if !open.is_empty() {
         let mut by_column: Vec<Entries> = vec![Vec::new(); open.len()];
-        for (r, line) in lines.iter().enumerate() {
-            let top = line.iter().fold(0.0f64, |t, e| t.max(e.1.abs()));
-            for &(c, v) in line.iter().filter(|e| e.1 != 0.0) {
-                by_column[c].push((r, v / top));
-            }
+        for r in 0..open.len() {
+            let top = lines.line(r).fold(0.0f64, |t, e| t.max(e.1.abs()));
+            lines
+                .line(r)
+                .for_each(|(c, v)| by_column[c].push((r, v / top)));
         }
         if let Err(Failure::Dependent(list)) = Factor::new(open.len(), &by_column) {
             out.push(Finding::Singular {
@@ -106,70 +105,4 @@ pub(super) fn findings(instance: &Instance, square: bool, x: &[f64]) -> Vec<Find
         out.push(Finding::WrongWay(wrong));
     }
     out
-}
-
-/// Rows that together have fewer columns than they are, and these columns. None: a perfect matching
-/// exists. An entry counts where its number is not 0.
-fn short_of_columns(lines: &[Entries]) -> Option<(Vec<usize>, Vec<usize>)> {
-    let n = lines.len();
-    let mut row_of: Vec<Option<usize>> = vec![None; n];
-    for r in 0..n {
-        // Breadth first along alternating paths from row r.
-        let mut from: Vec<Option<usize>> = vec![None; n];
-        let mut seen = vec![r];
-        let mut at = 0;
-        let mut end = None;
-        'search: while at < seen.len() {
-            let row = seen[at];
-            at += 1;
-            for &(c, _) in lines[row].iter().filter(|e| e.1 != 0.0) {
-                if from[c].is_some() {
-                    continue;
-                }
-                from[c] = Some(row);
-                match row_of[c] {
-                    None => {
-                        end = Some(c);
-                        break 'search;
-                    }
-                    Some(next) => seen.push(next),
-                }
-            }
-        }
-        let Some(mut c) = end else {
-            let mut columns: Vec<usize> = (0..n).filter(|&c| from[c].is_some()).collect();
-            columns.sort_unstable();
-            seen.sort_unstable();
-            return Some((seen, columns));
-        };
-        // Turn the path over.
-        while let Some(row) = from[c] {
-            let before = row_of.iter().position(|&m| m == Some(row));
-            row_of[c] = Some(row);
-            match before {
-                Some(b) if b != c && row != r => {
-                    row_of[b] = None;
-                    c = b;
-                }
-                _ => break,
-            }
-        }
-    }
-    None
-}
-
-#[cfg(test)]
-mod tests {
-    use super::short_of_columns;
-
-    #[test]
-    fn finds_rows_that_share_too_few_columns() {
-        let line = |columns: &[usize]| columns.iter().map(|&c| (c, 1.0)).collect();
-        let full = [line(&[0, 1]), line(&[0]), line(&[1, 2])];
-        assert_eq!(short_of_columns(&full), None);
-        let long = [line(&[0, 1]), line(&[1, 2]), line(&[0]), line(&[2, 3])];
-        assert_eq!(short_of_columns(&long), None);
-        let short = [line(&[0, 2]), line(&[1]), line(&[1])];
-        assert_eq!(short_of_columns(&short), Some((vec![1, 2], vec![1])));
-    }
 }

@@ -1,6 +1,6 @@
 //! Columns that are decided, that are slacks, and that equations give by others.
 
-use super::{Doubleton, Entries, Hopeless, ROUNDING, Range, State, Step, Work, term};
+use super::{Activity, Doubleton, Entries, Hopeless, ROUNDING, State, Step, Work, term};
 
 /// Rows of a column that is substituted, at most.
 const LONGEST: u32 = 6;
@@ -93,7 +93,7 @@ impl Work {
     }
 
     /// Whether a row and the bounds of its other columns imply this one's.
-    fn is_implied(&self, j: usize, i: usize, a: f64, range: &Range) -> [bool; 2] {
+    fn is_implied(&self, j: usize, i: usize, a: f64, range: &Activity) -> [bool; 2] {
         let [low, high] = range.without(term(a, self.bounds(j)));
         let [side_low, side_high] = self.sides(i);
         let ends = [(side_low - high) / a, (side_high - low) / a];

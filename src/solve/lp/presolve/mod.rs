@@ -6,20 +6,18 @@
 //! * a row of one column becomes bounds; a row that bounds imply goes; one that only one point can hold fixes it (*forcing*);
 //! * a column of one row is the slack of that row;
 //! * an equation gives a column as a combination of others where its bounds follow from theirs, or where there is but one other;
-//! * a free column gives its place to the activity of an inequality, which becomes the bounds of a column;
-//! * of rows, or columns, that are multiples of each other one stays.
+//! * a free column gives its place to the activity of an inequality, which becomes the bounds of a column.
 //!
 //! The data of the smaller program are rounded. That is harmless: the basis is what comes back, and the simplex method goes
 //! on from it in the program as it was given.
 
 mod columns;
-mod parallel;
 mod restore;
 mod rows;
 #[cfg(test)]
 mod tests;
 
-use super::form::{Problem, Sparse};
+use super::form::{Activity, Problem, Sparse, term};
 use super::simplex::State;
 
 /// Rounds over all rows and columns that have changed, at most.
@@ -90,23 +88,6 @@ enum Step {
         a: f64,
         /// The row without the column.
         entries: Entries,
-    },
-    /// A row that is `ratio` times another; which sides of the one that stays are its own.
-    Row {
-        kept: u32,
-        gone: u32,
-        ratio: f64,
-        from_gone: [bool; 2],
-        /// The sides are one.
-        fixed: bool,
-    },
-    /// A column that is `ratio` times another; the bounds of both.
-    Column {
-        kept: u32,
-        gone: u32,
-        ratio: f64,
-        kept_bounds: [f64; 2],
-        gone_bounds: [f64; 2],
     },
 }
 
@@ -184,65 +165,6 @@ impl Queue {
     }
 }
 
-/// The smallest and the largest value of a sum: the finite part, how many terms have no end, and the size of the terms.
-#[derive(Clone, Copy, Default)]
-struct Range {
-    ends: [f64; 2],
-    endless: [u32; 2],
-    size: f64,
-}
-
-impl Range {
-    fn add(&mut self, [low, high]: [f64; 2]) {
-        for (k, v) in [low, high].into_iter().enumerate() {
-            if v.is_finite() {
-                self.ends[k] += v;
-                self.size += v.abs();
-            } else {
-                self.endless[k] += 1;
-            }
-        }
-    }
-
-    fn low(&self) -> f64 {
-        if self.endless[0] > 0 {
-            f64::NEG_INFINITY
-        } else {
-            self.ends[0]
-        }
-    }
-
-    fn high(&self) -> f64 {
-        if self.endless[1] > 0 {
-            f64::INFINITY
-        } else {
-            self.ends[1]
-        }
-    }
-
-    /// The range without a term.
-    fn without(&self, term: [f64; 2]) -> [f64; 2] {
-        let infinite = [f64::NEG_INFINITY, f64::INFINITY];
-        std::array::from_fn(|k| {
-            let own = u32::from(!term[k].is_finite());
-            match self.endless[k] - own {
-                0 if own == 1 => self.ends[k],
-                0 => self.ends[k] - term[k],
-                _ => infinite[k],
-            }
-        })
-    }
-}
-
-/// The ends of a·x for x between bounds.
-fn term(a: f64, [l, u]: [f64; 2]) -> [f64; 2] {
-    if a > 0.0 {
-        [a * l, a * u]
-    } else {
-        [a * u, a * l]
-    }
-}
-
 /// The smaller program. None: nothing came of it, or it was found to have no solution, which the program itself proves.
 pub(super) fn presolve(p: &Problem) -> Option<Presolved> {
     let mut work = Work::new(p);
@@ -298,7 +220,6 @@ impl Work {
     }
 
     fn run(&mut self) -> Result<(), Hopeless> {
-        let mut parallel = 0;
         for _ in 0..ROUNDS {
             for i in self.new_rows.take() {
                 if self.row_alive[i as usize] {
@@ -310,16 +231,8 @@ impl Work {
                     self.column(j as usize)?;
                 }
             }
-            if self.new_rows.list.is_empty() && self.new_columns.list.is_empty() {
-                let before = self.steps.len();
-                if parallel < 3 {
-                    parallel += 1;
-                    self.parallel_rows()?;
-                    self.parallel_columns();
-                }
-                if self.steps.len() == before {
-                    break;
-                }
+            if self.new_rows.list.is_empty() {
+                break;
             }
         }
         Ok(())
@@ -357,11 +270,8 @@ impl Work {
     }
 
     /// The range of a row's activity within the bounds.
-    fn activity(&self, i: usize) -> Range {
-        let mut range = Range::default();
-        self.row_entries(i)
-            .for_each(|(j, a)| range.add(term(a, self.bounds(j))));
-        range
+    fn activity(&self, i: usize) -> Activity {
+        Activity::of(self.row_entries(i), &self.lower, &self.upper)
     }
 
     /// Takes a row away; its columns are looked at again.

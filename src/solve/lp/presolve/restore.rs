@@ -182,22 +182,6 @@ impl Back {
                 self.y[i] = std::mem::take(&mut self.d[j]);
                 self.x[j] = (self.x[j] - Self::sum(entries, &self.x)) / a;
             }
-            Step::Row {
-                kept,
-                gone,
-                ratio,
-                from_gone,
-                fixed,
-            } => {
-                let (kept, gone) = (*kept as usize, *gone as usize);
-                let state = self.row_state(kept, *fixed);
-                if is_at(state, *from_gone) {
-                    self.rows[gone] = if *ratio > 0.0 { state } else { opposite(state) };
-                    self.rows[kept] = State::Basic;
-                    self.y[gone] = std::mem::take(&mut self.y[kept]) / ratio;
-                }
-            }
-            Step::Column { .. } => self.column(step),
         }
     }
 
@@ -311,68 +295,5 @@ impl Back {
             self.columns[k] = State::Basic;
             self.columns[j] = nearest(self.x[j], *bounds);
         }
-    }
-
-    fn column(&mut self, step: &Step) {
-        let Step::Column {
-            kept,
-            gone,
-            ratio,
-            kept_bounds,
-            gone_bounds,
-        } = step
-        else {
-            return;
-        };
-        let (kept, gone) = (*kept as usize, *gone as usize);
-        self.d[gone] = ratio * self.d[kept];
-        let along = |s: State| if *ratio > 0.0 { s } else { opposite(s) };
-        let value = |s: State, [l, u]: [f64; 2]| match s {
-            State::Upper => u,
-            State::Lower => l,
-            _ => 0.0,
-        };
-        let (state, total) = (self.columns[kept], self.x[kept]);
-        if state != State::Basic {
-            self.columns[gone] = along(state);
-            self.x[gone] = value(self.columns[gone], *gone_bounds);
-            self.x[kept] = value(self.columns[kept], *kept_bounds);
-            return;
-        }
-        // One of them at a bound from which the other fills the rest.
-        for at in [free(*gone_bounds), opposite(free(*gone_bounds))] {
-            let x = value(at, *gone_bounds);
-            let rest = total - ratio * x;
-            if x.is_finite() && kept_bounds[0] <= rest && rest <= kept_bounds[1] {
-                (self.columns[gone], self.x[gone], self.x[kept]) = (at, x, rest);
-                return;
-            }
-        }
-        let rest = |x: f64| (total - x) / ratio;
-        let fits = |x: f64| {
-            x.is_finite() && {
-                let r = rest(x);
-                gone_bounds[0] <= r && r <= gone_bounds[1]
-            }
-        };
-        let at = match fits(kept_bounds[0])
-            || !kept_bounds[1].is_finite() && kept_bounds[0].is_finite()
-        {
-            true => State::Lower,
-            false if kept_bounds[1].is_finite() => State::Upper,
-            false => State::Free,
-        };
-        let x = value(at, *kept_bounds);
-        (self.columns[kept], self.x[kept]) = (at, x);
-        (self.columns[gone], self.x[gone]) = (State::Basic, rest(x));
-    }
-}
-
-/// A bound at which a column may rest.
-fn free([l, u]: [f64; 2]) -> State {
-    match (l.is_finite(), u.is_finite()) {
-        (true, _) => State::Lower,
-        (false, true) => State::Upper,
-        (false, false) => State::Free,
     }
 }
