@@ -207,19 +207,20 @@ fn tell(finished: &Finished, format: MessageFormat) {
     if finished.diagnostics.is_empty() {
         return;
     }
-    match format {
+    let Finished {
+        diagnostics: list,
+        map,
+        ..
+    } = finished;
+    let text = match format {
         MessageFormat::Human => {
             let look = Look::stream(std::io::stderr().is_terminal());
-            eprint!(
-                "{}",
-                diagnostics::render(&finished.diagnostics, &finished.map, look)
-            );
-            eprintln!("{}", diagnostics::count(&finished.diagnostics));
+            diagnostics::render(list, map, look) + &diagnostics::count(list) + "\n"
         }
-        MessageFormat::Json => {
-            eprint!("{}", json_lines(&finished.diagnostics, &finished.map));
-        }
-    }
+        MessageFormat::Json => json_lines(list, map),
+    };
+    // Who reads may have gone: `bmod check m.blk 2>&1 | head`.
+    let _ = std::io::stderr().write_all(text.as_bytes());
 }
 
 /// Options as the command line has them; Err: the exit status, after what is wrong was said.

@@ -384,18 +384,17 @@ impl<'h> Preprocessor<'h> {
         let bare = Path::new(name).extension().is_none();
         let longer = bare.then(|| format!("{name}.gms"));
         let names = || [Some(name), longer.as_deref()].into_iter().flatten();
-        if let Some(text) = names().find_map(|n| self.map.written_text(n)) {
-            let text = text.to_owned();
-            self.open(PathBuf::from(name), name, text, arguments, asked);
-            return Ok(());
-        }
+        let written = names().find_map(|n| self.map.written_text(n));
+        let mut read = match written {
+            Some(text) => Ok((PathBuf::from(name), text.to_owned())),
+            None => Err(HostError::NotFound),
+        };
         let from = self.frames.last().map(|f| f.path.clone());
-        let mut read = Err(HostError::NotFound);
         for n in names() {
-            read = self.host.read(n, from.as_deref());
             if !matches!(read, Err(HostError::NotFound)) {
                 break;
             }
+            read = self.host.read(n, from.as_deref());
         }
         let (path, text) = match read {
             Ok(found) => found,
