@@ -73,7 +73,7 @@ pub trait Host {
         0
     }
     /// Bytes that the process may hold before the system ends it, None where unknown.
-    fn memory_there_is(&self) -> Option<usize> {
+    fn available_memory(&self) -> Option<usize> {
         None
     }
 }

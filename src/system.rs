@@ -197,7 +197,7 @@ pub(crate) fn memory() -> usize {
 
 /// Bytes that the process may hold before the system ends it: nine tenths of what it holds and what is free now, of the
 /// machine or of its control group. None where the system does not say.
-pub(crate) fn memory_there_is() -> Option<usize> {
+pub(crate) fn available_memory() -> Option<usize> {
     let told = std::fs::read_to_string("/proc/meminfo").ok()?;
     let available = told.lines().find_map(|l| l.strip_prefix("MemAvailable:"))?;
     let free: usize = available.trim().strip_suffix(" kB")?.parse().ok()?;

@@ -246,9 +246,9 @@ impl Host for RunHost<'_> {
         0
     }
 
-    fn memory_there_is(&self) -> Option<usize> {
+    fn available_memory(&self) -> Option<usize> {
         #[cfg(feature = "system")]
-        return crate::system::memory_there_is();
+        return crate::system::available_memory();
         // Of the 4 GiB that addresses of 32 bits reach: growing a vector holds it twice.
         #[cfg(not(feature = "system"))]
         cfg!(target_arch = "wasm32").then_some(3 << 30)

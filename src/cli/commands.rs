@@ -121,7 +121,7 @@ pub(super) fn carry_out(
     let file = name(model);
     let watchdog = Watchdog::new(Watch {
         time_limit: options.time_limit,
-        max_memory: options.max_memory.or_else(crate::system::memory_there_is),
+        max_memory: options.max_memory.or_else(crate::system::available_memory),
         report: options.report.clone(),
         file: file.clone(),
         json: task.json.map(Path::to_path_buf),

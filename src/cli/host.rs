@@ -117,8 +117,8 @@ impl Host for SystemHost {
         system::memory()
     }
 
-    fn memory_there_is(&self) -> Option<usize> {
-        system::memory_there_is()
+    fn available_memory(&self) -> Option<usize> {
+        system::available_memory()
     }
 
     fn read(&mut self, path: &str, from: Option<&Path>) -> Found<String> {

@@ -159,7 +159,7 @@ impl<'h> Machine<'h> {
         }
         let started = host.now();
         let random = options.random();
-        let memory = options.max_memory.or_else(|| host.memory_there_is());
+        let memory = options.max_memory.or_else(|| host.available_memory());
         let machine = Self {
             symbols: program.symbols,
             store: program.store,

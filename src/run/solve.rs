@@ -324,7 +324,7 @@ impl<'h> Machine<'h> {
             iterations: count("iterlim", 2_147_483_647.0) as u64,
             evaluation_failures: count("domlim", 0.0) as u64,
             memory: self.memory,
-            memory_is_asked_for: self.options.max_memory.is_some(),
+            memory_is_requested: self.options.max_memory.is_some(),
         }
     }
 

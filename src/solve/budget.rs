@@ -112,7 +112,7 @@ pub struct Limits {
     /// Bytes: `--max-memory`, or what the machine has.
     pub memory: Option<usize>,
     /// It was `--max-memory`.
-    pub memory_is_asked_for: bool,
+    pub memory_is_requested: bool,
 }
 
 impl Default for Limits {
@@ -122,7 +122,7 @@ impl Default for Limits {
             iterations: 2_147_483_647,
             evaluation_failures: 0,
             memory: None,
-            memory_is_asked_for: false,
+            memory_is_requested: false,
         }
     }
 }
@@ -138,7 +138,7 @@ pub struct Budget<'m> {
     iterations: Cell<u64>,
     failures: u64,
     memory: Option<usize>,
-    memory_is_asked_for: bool,
+    memory_is_requested: bool,
     stopped: Cell<Option<Stop>>,
     asked: Cell<u32>,
     log: Cell<bool>,
@@ -161,7 +161,7 @@ impl<'m> Budget<'m> {
             iterations: Cell::new(0),
             failures: limits.evaluation_failures,
             memory: limits.memory,
-            memory_is_asked_for: limits.memory_is_asked_for,
+            memory_is_requested: limits.memory_is_requested,
             stopped: Cell::new(None),
             asked: Cell::new(0),
             log: Cell::new(log),
@@ -371,7 +371,7 @@ impl<'m> Budget<'m> {
 
     /// Whether there is a limit on time or memory, asked for, that a single step may break.
     pub fn is_limited(&self) -> bool {
-        self.memory_is_asked_for || self.deadline.get() < A_DAY
+        self.memory_is_requested || self.deadline.get() < A_DAY
     }
 
     /// Whether something of this size may be begun that cannot be stopped once it has: a matrix that a library factorises
@@ -511,7 +511,7 @@ mod tests {
         let limits = Limits {
             seconds: 3.0,
             memory: Some(1 << 20),
-            memory_is_asked_for: true,
+            memory_is_requested: true,
             ..Limits::default()
         };
         let budget = Budget::new(&mut quiet, limits, false);
