@@ -233,12 +233,9 @@ impl Run {
         let mut run = Self::new(name, finished.end, &finished.diagnostics, &finished.map);
         run.solves = finished.report.solves.iter().map(Solve::new).collect();
         run.report = Report {
-            bmod: run.report.bmod,
-            format: run.report.format,
-            file: run.report.file,
             status: run.report.status,
             diagnostics: run.report.diagnostics,
-            ..finished.report
+            ..finished.report.of(name)
         };
         Self {
             data: ended.data,

@@ -210,6 +210,17 @@ impl Evaluator {
         (&self.jacobian_start, &self.jacobian_column)
     }
 
+    /// The entries of the Jacobian at a point, row by row.
+    ///
+    /// Errors: as [`Self::jacobian`].
+    pub fn jacobian_rows(&mut self, x: &[f64]) -> Result<Vec<Vec<(usize, f64)>>, EvalFailure> {
+        let mut values = vec![0.0; self.jacobian_column.len()];
+        self.jacobian(x, &mut values)?;
+        let entry = |k: usize| (self.jacobian_column[k] as usize, values[k]);
+        let rows = self.jacobian_start.windows(2);
+        Ok(rows.map(|r| (r[0]..r[1]).map(entry).collect()).collect())
+    }
+
     /// Values of the Jacobian in the order of its pattern.
     ///
     /// Errors: as [`Self::rows`]; also a derivative with respect to a column that is not fixed that does not exist.

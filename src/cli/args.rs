@@ -51,7 +51,7 @@ pub enum Command {
     /// Runs a model: its assignments, solves, displays and figures.
     Run(RunArgs),
     /// Reports everything that is wrong with a model, without running it.
-    Check(CheckArgs),
+    Check(ModelArgs),
     /// Runs a model and explains how each solve ended: what contradicts what, what is unbounded, where
     /// the error comes from.
     Why(WhyArgs),
@@ -216,14 +216,6 @@ pub struct RunArgs {
     /// Proves an interval for the objective of every lp and mip.
     #[arg(long)]
     pub certify: bool,
-}
-
-/// Arguments of `bmod check`.
-#[derive(Args, Debug, Clone)]
-pub struct CheckArgs {
-    /// The model and what all commands share.
-    #[command(flatten)]
-    pub model: ModelArgs,
 }
 
 /// Arguments of `bmod why`.

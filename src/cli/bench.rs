@@ -3,11 +3,11 @@
 use std::path::Path;
 use std::time::Instant;
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressBar;
 
-use super::args::{BenchArgs, EXECUTION, USAGE};
-use super::commands::{carry_out_silently, name, options};
-use super::host::{interrupted, write_whole};
+use super::args::{BenchArgs, USAGE};
+use super::commands::{Status, carry_out_silently, complain, name, options, unwritten, write_file};
+use super::host::{interrupted, styled};
 use crate::report::figure::png;
 use crate::report::study;
 use crate::run::Options;
@@ -30,17 +30,13 @@ impl Monitor for Silent {
 }
 
 /// Carries out `bmod bench`; its exit status.
-pub fn bench(a: &BenchArgs) -> u8 {
-    let base = match options(&a.solve) {
-        Ok(o) => o,
-        Err(status) => return status,
-    };
+pub(super) fn bench(a: &BenchArgs) -> Status {
     let options = Options {
         keep_solutions: true,
         quiet: true,
         collect: false,
         time_limit: f64::INFINITY,
-        ..base
+        ..options(&a.solve)?
     };
     let settings = Settings {
         options: options.solver_options.clone(),
@@ -65,12 +61,10 @@ pub fn bench(a: &BenchArgs) -> u8 {
             }
             let (model, using, instance) = solve.parts();
             let title = format!("{model} using {using} ({})", short(&file));
-            let bar = ProgressBar::new(1);
-            if let Ok(style) =
-                ProgressStyle::with_template("{bar:30} {pos}/{len}  {elapsed:>4}  {wide_msg}")
-            {
-                bar.set_style(style);
-            }
+            let bar = styled(
+                ProgressBar::new(1),
+                "{bar:30} {pos}/{len}  {elapsed:>4}  {wide_msg}",
+            );
             let mut progress = |done: usize, total: usize, what: &str| {
                 bar.set_length(total as u64);
                 bar.set_position(done as u64);
@@ -92,14 +86,10 @@ pub fn bench(a: &BenchArgs) -> u8 {
             }
         }
     });
-    let finished = match finished {
-        Ok(f) => f,
-        Err(status) => return status,
-    };
-    let mut status = finished.end.exit();
+    let mut status = finished?.end.exit();
     if let Some((k, n)) = asked_beyond {
-        eprintln!("bmod: there is no solve {k}: the model has {n}");
-        return USAGE;
+        let message = format!("there is no solve {k}: the model has {n}");
+        return Err(complain(USAGE, message));
     }
     if studies.is_empty() && status == 0 {
         println!("Nothing was solved.");
@@ -116,15 +106,14 @@ pub fn bench(a: &BenchArgs) -> u8 {
         for (path, content) in files {
             let Some(path) = path else { continue };
             let path = numbered(path, k, studies.len());
-            let written =
-                content().and_then(|bytes| write_whole(&path, &bytes).map_err(|e| e.to_string()));
-            if let Err(e) = written {
-                eprintln!("bmod: {} could not be written: {e}", path.display());
-                status = status.max(EXECUTION);
-            }
+            let written = match content() {
+                Ok(bytes) => write_file(&path, &bytes).err(),
+                Err(e) => Some(unwritten(&path, e)),
+            };
+            status = status.max(written.unwrap_or(0));
         }
     }
-    status
+    Ok(status)
 }
 
 fn short(file: &str) -> String {

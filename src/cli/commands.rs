@@ -17,6 +17,16 @@ use crate::run::{ListOptions, Machine, Options};
 use crate::session::{self, Finished};
 use crate::solve::registry::SOLVERS;
 use crate::source::PreprocessOptions;
+use crate::source::SourceMap;
+
+/// An exit status; as an error after what is wrong was said.
+pub(super) type Status = Result<u8, u8>;
+
+/// Says what is wrong; gives the exit status.
+pub(super) fn complain(status: u8, message: impl std::fmt::Display) -> u8 {
+    eprintln!("bmod: {message}");
+    status
+}
 
 /// Carries out a command; its exit status.
 pub fn execute(cli: &Cli) -> u8 {
@@ -25,22 +35,9 @@ pub fn execute(cli: &Cli) -> u8 {
         Color::Always => Some(true),
         Color::Never => Some(false),
     });
-    match &cli.command {
+    let status = match &cli.command {
         Command::Run(a) => run(a),
-        Command::Check(a) => {
-            let task = Task {
-                check_only: true,
-                ..Task::new(&a.model, Output::Standard)
-            };
-            let finished = carry_out(task, Options::default(), &mut |_| {});
-            if finished.end == RunStatus::Ok
-                && finished.diagnostics.is_empty()
-                && a.model.message_format == MessageFormat::Human
-            {
-                println!("{}: nothing is wrong", a.model.file.display());
-            }
-            finished.end.exit()
-        }
+        Command::Check(a) => Ok(check(a)),
         Command::Bench(a) => super::bench::bench(a),
         Command::Show(a) => super::show::show(a),
         Command::Dual(a) => super::derive::derive(a, Kind::Dual),
@@ -49,30 +46,48 @@ pub fn execute(cli: &Cli) -> u8 {
         Command::Explain(a) => super::explain::run(a),
         Command::Report(a) => super::report::report(a),
         Command::Why(a) => super::why::why(a),
-        Command::List(a) => list(a),
+        Command::List(a) => Ok(list(a)),
         Command::Gdx(a) => super::gdx::show(a),
         Command::Sweep(a) => super::sweep::sweep(a),
         Command::Watch(a) => super::watch::watch(a),
         Command::New(a) => super::new::new(a),
         Command::Test(a) => super::test::test(a),
-        Command::Fmt(a) => super::fmt::fmt(a),
-        Command::Lsp { stdio: _ } => super::lsp::lsp(),
-        Command::Man { folder } => match manual(folder) {
-            Ok(()) => 0,
-            Err(e) => {
-                eprintln!("bmod: {} cannot be written: {e}", folder.display());
-                EXECUTION
-            }
-        },
+        Command::Fmt(a) => Ok(super::fmt::fmt(a)),
+        Command::Lsp { stdio: _ } => Ok(super::lsp::lsp()),
+        Command::Man { folder } => manual(folder).map(|()| 0).map_err(|e| {
+            complain(
+                EXECUTION,
+                format!("{} cannot be written: {e}", folder.display()),
+            )
+        }),
         Command::Completions { shell } => {
             let _ = std::io::stdout().write_all(&completions(*shell));
-            0
+            Ok(0)
         }
+    };
+    status.unwrap_or_else(|status| status)
+}
+
+fn check(a: &ModelArgs) -> u8 {
+    let task = Task {
+        check_only: true,
+        ..Task::new(a, Output::Standard)
+    };
+    let finished = carry_out(task, Options::default(), &mut |_| {});
+    let silent = finished.end == RunStatus::Ok && finished.diagnostics.is_empty();
+    if silent && a.message_format == MessageFormat::Human {
+        println!("{}: nothing is wrong", a.file.display());
     }
+    finished.end.exit()
 }
 
 pub(super) fn name(m: &ModelArgs) -> String {
     m.file.to_string_lossy().into_owned()
+}
+
+/// The name of a model's file, without folder and ending.
+pub(super) fn stem(m: &ModelArgs) -> std::borrow::Cow<'_, str> {
+    m.file.file_stem().unwrap_or_default().to_string_lossy()
 }
 
 /// A model to be run or checked.
@@ -111,13 +126,7 @@ pub(super) fn carry_out(
     let model = task.model;
     let mut host = SystemHost::new(&model.file, task.out, &model.allow_read, task.output)
         .sandbox(model.sandbox);
-    let extension = model.file.extension();
-    let preprocess = PreprocessOptions {
-        defines: model.define.clone(),
-        slash_comments: extension.is_some_and(|e| e.eq_ignore_ascii_case("blk")),
-        max_memory: options.max_memory,
-        ..PreprocessOptions::default()
-    };
+    let preprocess = preprocess(model, options.max_memory);
     let file = name(model);
     let watchdog = Watchdog::new(Watch {
         time_limit: options.time_limit,
@@ -137,8 +146,23 @@ pub(super) fn carry_out(
     );
     drop(watchdog);
     host.finish();
-    tell(&finished, model.message_format);
+    tell(&finished.diagnostics, &finished.map, model.message_format);
     finished
+}
+
+fn preprocess(model: &ModelArgs, max_memory: Option<usize>) -> PreprocessOptions {
+    let extension = model.file.extension();
+    PreprocessOptions {
+        defines: model.define.clone(),
+        slash_comments: extension.is_some_and(|e| e.eq_ignore_ascii_case("blk")),
+        max_memory,
+        ..PreprocessOptions::default()
+    }
+}
+
+/// A folder that goes with the command.
+pub(super) fn temporary_folder() -> Result<tempfile::TempDir, u8> {
+    tempfile::tempdir().map_err(|_| complain(EXECUTION, "no folder for temporary files"))
 }
 
 /// The same for the answers only: what the model prints and writes is not kept.
@@ -147,10 +171,7 @@ pub(super) fn carry_out_silently(
     options: Options,
     after: &mut dyn FnMut(&mut Machine),
 ) -> Result<Finished, u8> {
-    let Ok(out) = tempfile::tempdir() else {
-        eprintln!("bmod: no folder for temporary files");
-        return Err(EXECUTION);
-    };
+    let out = temporary_folder()?;
     let task = Task {
         out: out.path(),
         ..Task::new(model, Output::Quiet)
@@ -161,57 +182,25 @@ pub(super) fn carry_out_silently(
 /// Compiles a model, tells what is wrong with it, and hands it on if nothing is; the exit status.
 pub(super) fn compiled(
     model: &ModelArgs,
-    f: &mut dyn FnMut(crate::check::Program, &mut dyn crate::host::Host) -> u8,
-) -> u8 {
-    let mut host = SystemHost::new(
-        &model.file,
-        Path::new("."),
-        &model.allow_read,
-        Output::Quiet,
-    );
-    let extension = model.file.extension();
-    let preprocess = PreprocessOptions {
-        defines: model.define.clone(),
-        slash_comments: extension.is_some_and(|e| e.eq_ignore_ascii_case("blk")),
-        ..PreprocessOptions::default()
+    f: &mut dyn FnMut(crate::check::Program, &mut dyn crate::host::Host) -> Status,
+) -> Status {
+    let (file, none) = (&model.file, Path::new("."));
+    let mut host = SystemHost::new(file, none, &model.allow_read, Output::Quiet);
+    let preprocess = preprocess(model, None);
+    let (found, map) = match crate::check::compile(&mut host, &name(model), preprocess, &SOLVERS) {
+        Err(e) => (vec![e.0], e.1),
+        Ok(p) if p.has_errors() => (p.diagnostics, p.map),
+        Ok(p) => return f(p, &mut host),
     };
-    let (diagnostics, map, program) =
-        match crate::check::compile(&mut host, &name(model), preprocess, &SOLVERS) {
-            Err(e) => (vec![e.0], e.1, None),
-            Ok(mut p) => {
-                let found = std::mem::take(&mut p.diagnostics);
-                match found
-                    .iter()
-                    .any(|d| d.severity == crate::diag::Severity::Error)
-                {
-                    true => (found, p.map, None),
-                    false => (Vec::new(), crate::source::SourceMap::default(), Some(p)),
-                }
-            }
-        };
-    let Some(program) = program else {
-        let finished = Finished {
-            end: RunStatus::CompilationError,
-            report: Report::default(),
-            diagnostics,
-            map,
-        };
-        tell(&finished, model.message_format);
-        return finished.end.exit();
-    };
-    f(program, &mut host)
+    tell(&found, &map, model.message_format);
+    Err(RunStatus::CompilationError.exit())
 }
 
 /// Writes diagnostics for the user, or for a program.
-fn tell(finished: &Finished, format: MessageFormat) {
-    if finished.diagnostics.is_empty() {
+fn tell(list: &[crate::diag::Diagnostic], map: &SourceMap, format: MessageFormat) {
+    if list.is_empty() {
         return;
     }
-    let Finished {
-        diagnostics: list,
-        map,
-        ..
-    } = finished;
     let text = match format {
         MessageFormat::Human => {
             let look = Look::stream(std::io::stderr().is_terminal());
@@ -229,30 +218,19 @@ pub(super) fn options(a: &SolveArgs) -> Result<Options, u8> {
         time_limit: a.time_limit.unwrap_or(f64::INFINITY),
         ..Options::default()
     };
-    match options.set(&a.option) {
-        Ok(ignored) => {
-            for name in ignored {
-                eprintln!("bmod: --option {name}: it means nothing here and is passed over");
-            }
-            Ok(options)
-        }
-        Err(message) => {
-            eprintln!("bmod: --option: {message}");
-            Err(USAGE)
-        }
+    let ignored = options.set(&a.option);
+    for name in ignored.map_err(|why| complain(USAGE, format!("--option: {why}")))? {
+        eprintln!("bmod: --option {name}: it means nothing here and is passed over");
     }
+    Ok(options)
 }
 
-fn run(a: &RunArgs) -> u8 {
+fn run(a: &RunArgs) -> Status {
     let json_to_stdout = a.json.as_deref() == Some(Path::new("-"));
     let solution_to_stdout = a.solution.as_deref() == Some(Path::new("-"));
     let (output, is_terminal) = match json_to_stdout || solution_to_stdout {
         true => (Output::Error, std::io::stderr().is_terminal()),
         false => (Output::Standard, std::io::stdout().is_terminal()),
-    };
-    let base = match options(&a.solve) {
-        Ok(o) => o,
-        Err(status) => return status,
     };
     let options = Options {
         certify: a.certify,
@@ -262,7 +240,7 @@ fn run(a: &RunArgs) -> u8 {
         quiet: a.quiet,
         all: a.all,
         color: Look::stream(is_terminal).color,
-        ..base
+        ..options(&a.solve)?
     };
     let file = name(&a.model);
     let mut solutions = None;
@@ -278,32 +256,36 @@ fn run(a: &RunArgs) -> u8 {
     });
     let mut status = finished.end.exit();
     if !a.quiet && !finished.report.files.is_empty() {
-        let line = format!("written: {}\n", finished.report.files.join(", "));
-        let _ = match output {
-            Output::Error => std::io::stderr().write_all(line.as_bytes()),
-            _ => std::io::stdout().write_all(line.as_bytes()),
-        };
+        output.write(&format!("written: {}\n", finished.report.files.join(", ")));
     }
-    if let Some(path) = &a.solution
-        && let Some(text) = &solutions
-        && let Err(e) = write_to(path, text.as_bytes())
-    {
-        eprintln!("bmod: {} could not be written: {e}", path.display());
-        status = status.max(EXECUTION);
+    if let (Some(path), Some(text)) = (&a.solution, &solutions) {
+        status = status.max(write_to(path, text));
     }
     if let Some(path) = &a.json {
         status = status.max(write_report(finished, &file, path));
     }
-    status
+    Ok(status)
 }
 
 /// Writes a file, or standard output for `-`; a reader that has gone away is no error of ours.
-fn write_to(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+fn write_to(path: &Path, text: &str) -> u8 {
     if path == Path::new("-") {
-        let _ = std::io::stdout().write_all(bytes);
-        return Ok(());
+        Output::Standard.write(text);
+        return 0;
     }
-    write_whole(path, bytes)
+    write_file(path, text.as_bytes()).err().unwrap_or(0)
+}
+
+/// Writes a file whole or not at all.
+pub(super) fn write_file(path: &Path, bytes: &[u8]) -> Result<(), u8> {
+    write_whole(path, bytes).map_err(|e| unwritten(path, e))
+}
+
+pub(super) fn unwritten(path: &Path, why: impl std::fmt::Display) -> u8 {
+    complain(
+        EXECUTION,
+        format!("{} could not be written: {why}", path.display()),
+    )
 }
 
 /// Writes the report of a run as JSON; the exit status that follows from that.
@@ -311,10 +293,7 @@ pub(super) fn write_report(finished: Finished, file: &str, path: &Path) -> u8 {
     let mut report = Report {
         status: finished.end,
         diagnostics: Diagnostic::all(&finished.diagnostics, &finished.map),
-        solves: finished.report.solves,
-        displays: finished.report.displays,
-        files: finished.report.files,
-        ..Report::new(file)
+        ..finished.report.of(file)
     };
     if let Some(k) = report.diagnostics.iter().position(|d| d.code == "E0490") {
         let left_out = report.shorten();
@@ -323,14 +302,9 @@ pub(super) fn write_report(finished: Finished, file: &str, path: &Path) -> u8 {
     write_json(&report, path)
 }
 
-/// Writes a report as JSON, whole or not at all.
+/// Writes a report as JSON; the exit status.
 pub(super) fn write_json(report: &Report, path: &Path) -> u8 {
-    let text = report.to_json();
-    if let Err(e) = write_to(path, text.as_bytes()) {
-        eprintln!("bmod: {} could not be written: {e}", path.display());
-        return EXECUTION;
-    }
-    0
+    write_to(path, &report.to_json())
 }
 
 fn list(a: &ListArgs) -> u8 {

@@ -1,15 +1,15 @@
 //! What `bmod dual` and `bmod kkt` share: the run, the page, the model that is written, the comparison.
 
 use super::args::{ChosenArgs, DeriveArgs, EXECUTION, FormulaFormat, ModelArgs, SolveArgs};
-use super::commands::{carry_out_silently, name, options};
-use super::host::write_whole;
+use super::commands::{Status, carry_out_silently, name, options, write_file};
+use super::host::Output;
 use crate::diag::Diagnostic;
 use crate::formulation::derive::Primal;
 use crate::formulation::derived::{Derived, Kind};
 use crate::formulation::page::{Format, write};
 use crate::formulation::study;
 use crate::run::{Machine, Options, Studied, StudyChoice};
-use std::io::{IsTerminal, Write};
+use std::io::IsTerminal;
 use std::path::{Component, Path};
 
 /// Characters of a line, where the terminal does not say.
@@ -34,20 +34,15 @@ pub fn format(f: FormulaFormat) -> Format {
 pub type Derive<'a> = dyn FnMut(&mut Machine, Primal, Studied) -> Result<u8, Box<Diagnostic>> + 'a;
 
 /// Runs a model and hands the solve that is meant on; the exit status.
-pub fn studied(model: &ModelArgs, solve: &SolveArgs, chosen: &ChosenArgs, f: &mut Derive) -> u8 {
-    let base = match options(solve) {
-        Ok(o) => o,
-        Err(status) => return status,
-    };
+pub(super) fn studied(
+    model: &ModelArgs,
+    solve: &SolveArgs,
+    chosen: &ChosenArgs,
+    f: &mut Derive,
+) -> Status {
     let options = Options {
-        quiet: true,
         collect: false,
-        study: Some(StudyChoice {
-            model: chosen.name.clone(),
-            number: chosen.number,
-            generate_only: false,
-        }),
-        ..base
+        ..study_options(solve, chosen)?
     };
     let mut status = 0;
     let finished = carry_out_silently(model, options, &mut |m| match study::chosen(m)
@@ -59,14 +54,24 @@ pub fn studied(model: &ModelArgs, solve: &SolveArgs, chosen: &ChosenArgs, f: &mu
             status = EXECUTION;
         }
     });
-    match finished {
-        Ok(f) => f.end.exit().max(status),
-        Err(status) => status,
-    }
+    Ok(finished?.end.exit().max(status))
+}
+
+/// Options of a run whose solve is studied.
+pub(super) fn study_options(solve: &SolveArgs, chosen: &ChosenArgs) -> Result<Options, u8> {
+    Ok(Options {
+        quiet: true,
+        study: Some(StudyChoice {
+            model: chosen.name.clone(),
+            number: chosen.number,
+            generate_only: false,
+        }),
+        ..options(solve)?
+    })
 }
 
 /// Carries out `bmod dual` and `bmod kkt`; the exit status.
-pub fn derive(a: &DeriveArgs, kind: Kind) -> u8 {
+pub(super) fn derive(a: &DeriveArgs, kind: Kind) -> Status {
     studied(&a.model, &a.solve, &a.chosen, &mut |m, primal, studied| {
         let d = kind.derive(m, &primal, &studied, a.check, a.as_model.is_some())?;
         Ok(finish(a, m, &d, &primal, &studied))
@@ -76,7 +81,7 @@ pub fn derive(a: &DeriveArgs, kind: Kind) -> u8 {
 /// Shows a derivation, writes its model, and says what the comparison found; the exit status.
 fn finish(a: &DeriveArgs, m: &Machine, d: &Derived, primal: &Primal, studied: &Studied) -> u8 {
     let to_stdout = a.as_model.as_deref() == Some(Path::new("-"));
-    let mut status = if d.failed() { EXECUTION } else { 0 };
+    let status = if d.failed() { EXECUTION } else { 0 };
     if a.as_model.is_none() {
         tell(&write(&d.page, format(a.format), &d.title));
     }
@@ -97,17 +102,11 @@ fn finish(a: &DeriveArgs, m: &Machine, d: &Derived, primal: &Primal, studied: &S
         tell(&text);
         return status;
     }
-    match write_whole(path, text.as_bytes()) {
-        Ok(()) => say(format!(
-            "{} is written: the model {}",
-            path.display(),
-            d.formulation.name
-        )),
-        Err(e) => {
-            eprintln!("bmod: {} could not be written: {e}", path.display());
-            status = EXECUTION;
-        }
+    if let Err(failed) = write_file(path, text.as_bytes()) {
+        return failed;
     }
+    let model = &d.formulation.name;
+    say(format!("{} is written: the model {model}", path.display()));
     status
 }
 
@@ -132,7 +131,7 @@ fn seen_from(out: &Path, file: &Path) -> String {
     path.to_string_lossy().into_owned()
 }
 
-/// Writes to standard output; a reader that has gone away is no error.
-pub fn tell(text: &str) {
-    let _ = std::io::stdout().write_all(text.as_bytes());
+/// Writes to standard output.
+pub(super) fn tell(text: &str) {
+    Output::Standard.write(text);
 }

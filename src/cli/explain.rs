@@ -1,13 +1,14 @@
 //! `bmod explain`: a model and its answer in words.
 
-use super::args::ExplainArgs;
+use super::args::{ExplainArgs, WhyArgs};
+use super::commands::Status;
 use super::derive::{studied, tell, width};
 use crate::formulation::explain::of;
 use crate::formulation::page::filled;
 use crate::solve::ModelStatus;
 
 /// Carries out `bmod explain`; its exit status.
-pub fn run(a: &ExplainArgs) -> u8 {
+pub(super) fn run(a: &ExplainArgs) -> Status {
     let mut unsolved = false;
     let status = studied(&a.model, &a.solve, &a.chosen, &mut |m, primal, studied| {
         let status = studied
@@ -23,15 +24,16 @@ pub fn run(a: &ExplainArgs) -> u8 {
             tell(&format!("{}\n", filled(&p, width())));
         }
         Ok(0)
-    });
+    })?;
     if !unsolved {
-        return status;
+        return Ok(status);
     }
     // What contradicts what, and what is unbounded.
     tell("\n");
-    status.max(super::why::why(&super::args::WhyArgs {
+    let why = super::why::why(&WhyArgs {
         model: a.model.clone(),
         json: None,
         solve: a.solve.clone(),
-    }))
+    });
+    why.map(|why| status.max(why))
 }

@@ -1,55 +1,44 @@
 //! `bmod fmt`: the layout of texts.
 
 use std::io::{Read, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::args::{EXECUTION, FmtArgs, USAGE};
+use super::commands::{Status, complain};
 use super::host::write_whole;
 use crate::editor;
 
 /// Carries out `bmod fmt`; with `--check` 1 if a file is not laid out as it would be.
 pub(super) fn fmt(a: &FmtArgs) -> u8 {
-    let status = a.files.iter().map(|file| one(file, a.check)).max();
-    status.unwrap_or(0)
+    let status = |file: &PathBuf| one(file, a.check).unwrap_or_else(|status| status);
+    a.files.iter().map(status).max().unwrap_or(0)
 }
 
-fn one(file: &Path, check: bool) -> u8 {
+fn one(file: &Path, check: bool) -> Status {
     let stdin = file == Path::new("-");
-    let name = if stdin {
-        "standard input".into()
-    } else {
-        file.display().to_string()
+    let name = match stdin {
+        true => "standard input".into(),
+        false => file.display().to_string(),
     };
-    let text = match read(file, stdin) {
-        Ok(text) => text,
-        Err(why) => {
-            eprintln!("bmod: {name} cannot be read: {why}");
-            return EXECUTION;
-        }
-    };
-    let gams = file
-        .extension()
-        .is_some_and(|e| !e.eq_ignore_ascii_case("blk"));
+    let text = read(file, stdin)
+        .map_err(|why| complain(EXECUTION, format!("{name} cannot be read: {why}")))?;
+    let extension = file.extension();
+    let gams = extension.is_some_and(|e| !e.eq_ignore_ascii_case("blk"));
     let new = editor::format(&text, !gams);
     let same = new == text;
-    if check {
-        if !same {
-            println!("{name}: `bmod fmt` would change it");
-        }
-        return if same { 0 } else { USAGE };
+    if check && !same {
+        println!("{name}: `bmod fmt` would change it");
+        return Err(USAGE);
     }
     let written = match stdin {
+        _ if check => Ok(()),
         true => std::io::stdout().write_all(new.as_bytes()),
         false if same => Ok(()),
         false => write_whole(file, new.as_bytes()),
     };
-    match written {
-        Ok(()) => 0,
-        Err(e) => {
-            eprintln!("bmod: {name} cannot be written: {e}");
-            EXECUTION
-        }
-    }
+    written
+        .map(|()| 0)
+        .map_err(|e| complain(EXECUTION, format!("{name} cannot be written: {e}")))
 }
 
 fn read(file: &Path, stdin: bool) -> Result<String, String> {

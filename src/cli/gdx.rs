@@ -1,21 +1,16 @@
 //! `bmod gdx`: what is in a GDX file.
 
-use std::io::Write;
-
 use super::args::{EXECUTION, GdxArgs, USAGE};
+use super::commands::{Status, complain};
+use super::derive::tell;
 use crate::diag::nearest;
 use crate::gdx::{Domain, Error, File, Value};
 
 /// Shows the symbols of a file, or the records of one; the exit status.
-pub(super) fn show(a: &GdxArgs) -> u8 {
+pub(super) fn show(a: &GdxArgs) -> Status {
     let name = a.file.display();
-    let bytes = match std::fs::read(&a.file) {
-        Ok(bytes) => bytes,
-        Err(e) => {
-            eprintln!("bmod: {name} cannot be read: {e}");
-            return USAGE;
-        }
-    };
+    let bytes = std::fs::read(&a.file)
+        .map_err(|e| complain(USAGE, format!("{name} cannot be read: {e}")))?;
     let table = File::open(&bytes).and_then(|file| {
         let Some(symbol) = &a.symbol else {
             return Ok((Some(head(&file, &name.to_string())), symbols(&file)?));
@@ -28,21 +23,16 @@ pub(super) fn show(a: &GdxArgs) -> u8 {
         };
         Ok((None, records(&file, n)?))
     });
-    let text = match table {
-        Ok((_, table)) if a.csv => comma_separated(&table),
-        Ok((head, table)) => head.unwrap_or_default() + &aligned(&table),
-        Err(e) => {
-            eprintln!("bmod: {name}: {e}");
-            return EXECUTION;
-        }
-    };
-    // A reader that has gone away is no error.
-    let _ = std::io::stdout().write_all(text.as_bytes());
-    0
+    let (head, table) = table.map_err(|e| complain(EXECUTION, format!("{name}: {e}")))?;
+    tell(&match a.csv {
+        true => comma_separated(&table),
+        false => head.unwrap_or_default() + &aligned(&table),
+    });
+    Ok(0)
 }
 
 /// Lines of cells; the first has the names of the columns.
-type Rows = Vec<Vec<String>>;
+pub(super) type Rows = Vec<Vec<String>>;
 
 fn head(file: &File<'_>, name: &str) -> String {
     let packed = if file.packed { ", compressed" } else { "" };
@@ -134,7 +124,7 @@ fn value(file: &File<'_>, v: Value) -> String {
     }
 }
 
-fn comma_separated(rows: &Rows) -> String {
+pub(super) fn comma_separated(rows: &Rows) -> String {
     let mut out = csv::Writer::from_writer(Vec::new());
     for row in rows {
         // A vector takes everything: writing cannot fail.

@@ -32,6 +32,17 @@ pub enum Output {
     Quiet,
 }
 
+impl Output {
+    /// Writes; a reader that has gone away (`| head`) is no error of ours.
+    pub(super) fn write(self, text: &str) {
+        let _ = match self {
+            Self::Standard => std::io::stdout().write_all(text.as_bytes()),
+            Self::Error => std::io::stderr().write_all(text.as_bytes()),
+            Self::Quiet => Ok(()),
+        };
+    }
+}
+
 /// Files of this machine, this terminal, this clock.
 pub struct SystemHost {
     files: Files,
@@ -41,6 +52,14 @@ pub struct SystemHost {
     bar: Option<ProgressBar>,
     last_progress: Option<Instant>,
     terminal: bool,
+}
+
+/// A line of progress that looks like this.
+pub(super) fn styled(bar: ProgressBar, template: &str) -> ProgressBar {
+    match ProgressStyle::with_template(template) {
+        Ok(style) => bar.with_style(style),
+        Err(_) => bar,
+    }
 }
 
 /// Whether Ctrl-C was pressed.
@@ -172,12 +191,7 @@ impl Host for SystemHost {
 
     fn print(&mut self, text: &str) {
         self.finish();
-        // A reader that has gone away (`| head`) is no error of ours.
-        let _ = match self.output {
-            Output::Standard => std::io::stdout().write_all(text.as_bytes()),
-            Output::Error => std::io::stderr().write_all(text.as_bytes()),
-            Output::Quiet => Ok(()),
-        };
+        self.output.write(text);
     }
 
     fn elapsed(&self) -> f64 {
@@ -189,7 +203,7 @@ impl Host for SystemHost {
     }
 
     fn interrupted(&self) -> bool {
-        INTERRUPTED.load(Ordering::Relaxed)
+        interrupted()
     }
 
     fn progress(&mut self, message: &str) {
@@ -201,13 +215,8 @@ impl Host for SystemHost {
             return;
         }
         self.last_progress = Some(now);
-        let bar = self.bar.get_or_insert_with(|| {
-            let bar = ProgressBar::new_spinner();
-            if let Ok(style) = ProgressStyle::with_template("{spinner} {wide_msg}") {
-                bar.set_style(style);
-            }
-            bar
-        });
+        let spinner = || styled(ProgressBar::new_spinner(), "{spinner} {wide_msg}");
+        let bar = self.bar.get_or_insert_with(spinner);
         bar.set_message(message.to_string());
         bar.tick();
     }

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use super::args::{EXECUTION, NewArgs, Template, USAGE};
-use super::host::write_whole;
+use super::args::{NewArgs, Template, USAGE};
+use super::commands::{Status, complain, unwritten, write_file};
 
 /// The files of a template: names, with NAME for the name that was given, and their texts.
 fn files(template: Template) -> &'static [(&'static str, &'static str)] {
@@ -26,12 +26,12 @@ fn files(template: Template) -> &'static [(&'static str, &'static str)] {
 }
 
 /// Carries out `bmod new`; nothing that is there is overwritten.
-pub fn new(a: &NewArgs) -> u8 {
+pub(super) fn new(a: &NewArgs) -> Status {
     let name = a.name.trim_end_matches(".blk");
     let stem = Path::new(name).file_name().and_then(|n| n.to_str());
     let Some(stem) = stem.filter(|n| !n.is_empty()) else {
-        eprintln!("bmod: `{}` is not a name for a model", a.name);
-        return USAGE;
+        let message = format!("`{}` is not a name for a model", a.name);
+        return Err(complain(USAGE, message));
     };
     let folder = Path::new(name).parent().unwrap_or(Path::new(""));
     let files: Vec<_> = files(a.template)
@@ -44,21 +44,14 @@ pub fn new(a: &NewArgs) -> u8 {
         })
         .collect();
     if let Some((there, _)) = files.iter().find(|(path, _)| path.exists()) {
-        eprintln!(
-            "bmod: {} is there already; nothing was written",
-            there.display()
-        );
-        return USAGE;
+        let message = format!("{} is there already; nothing was written", there.display());
+        return Err(complain(USAGE, message));
     }
     for (path, text) in &files {
-        let made =
-            std::fs::create_dir_all(folder).and_then(|()| write_whole(path, text.as_bytes()));
-        if let Err(e) = made {
-            eprintln!("bmod: {} could not be written: {e}", path.display());
-            return EXECUTION;
-        }
+        std::fs::create_dir_all(folder).map_err(|e| unwritten(path, e))?;
+        write_file(path, text.as_bytes())?;
         println!("written: {}", path.display());
     }
     println!("try: bmod run {}", files[0].0.display());
-    0
+    Ok(0)
 }

@@ -1,14 +1,16 @@
 //! `bmod range`: in which intervals prices and solutions of a linear program hold.
 
 use super::args::{EXECUTION, RangeArgs, TableFormat};
+use super::commands::{Status, complain};
 use super::derive::{studied, tell, width};
+use super::gdx::comma_separated;
 use crate::formulation::derive::Primal;
 use crate::formulation::page::{Format, write};
 use crate::formulation::range::{Ranges, named, of, page};
 use crate::run::Machine;
 
 /// Carries out `bmod range`; its exit status.
-pub fn range(a: &RangeArgs) -> u8 {
+pub(super) fn range(a: &RangeArgs) -> Status {
     studied(&a.model, &a.solve, &a.chosen, &mut |m, primal, studied| {
         let r = of(m, &primal, &studied, &a.names)?;
         match a.format {
@@ -16,51 +18,33 @@ pub fn range(a: &RangeArgs) -> u8 {
             TableFormat::Csv => tell(&csv(m, &primal, &r)),
             TableFormat::Json => tell(&json(m, &primal, &r)),
         }
-        if r.unfinished {
-            eprintln!(
-                "bmod: some ranges are missing (their time is used up, or they are lost in rounding); name the rows and columns that you mean"
-            );
-            return Ok(EXECUTION);
-        }
-        Ok(0)
+        let missing = "some ranges are missing (their time is used up, or they are lost in rounding); name the rows and columns that you mean";
+        Ok(match r.unfinished {
+            true => complain(EXECUTION, missing),
+            false => 0,
+        })
     })
 }
 
 fn csv(m: &Machine, primal: &Primal, r: &Ranges) -> String {
     let o = &primal.generated.origin;
-    let mut w = csv::Writer::from_writer(Vec::new());
-    let mut line = |cells: Vec<String>| {
-        let _ = w.write_record(cells);
+    let head = "kind,name,value,level,price_below,price_above,from,to";
+    let mut lines = vec![head.split(',').map(String::from).collect()];
+    let mut line = |kind: &str, name: String, numbers: [Option<f64>; 6]| {
+        let cells = numbers.map(|x| x.map_or(String::new(), |x| x.to_string()));
+        lines.push([kind.into(), name].into_iter().chain(cells).collect());
     };
-    let head = [
-        "kind",
-        "name",
-        "value",
-        "level",
-        "price_below",
-        "price_above",
-        "from",
-        "to",
-    ];
-    line(head.map(String::from).to_vec());
     for r in &r.rows {
-        let mut cells = vec![
-            "row".into(),
-            named(m, &o.rows, r.row),
-            r.value.to_string(),
-            String::new(),
-        ];
-        cells.extend([r.price[0], r.price[1], r.interval[0], r.interval[1]].map(|x| x.to_string()));
-        line(cells);
+        let ([below, above], [from, to]) = (r.price.map(Some), r.interval.map(Some));
+        let numbers = [Some(r.value), None, below, above, from, to];
+        line("row", named(m, &o.rows, r.row), numbers);
     }
     for c in &r.costs {
-        let mut cells = vec!["column".into(), named(m, &o.columns, c.column)];
-        cells.extend([c.value, c.level].map(|x| x.to_string()));
-        cells.extend([String::new(), String::new()]);
-        cells.extend(c.interval.map(|x| x.to_string()));
-        line(cells);
+        let [from, to] = c.interval.map(Some);
+        let numbers = [Some(c.value), Some(c.level), None, None, from, to];
+        line("column", named(m, &o.columns, c.column), numbers);
     }
-    String::from_utf8(w.into_inner().unwrap_or_default()).unwrap_or_default()
+    comma_separated(&lines)
 }
 
 fn json(m: &Machine, primal: &Primal, r: &Ranges) -> String {

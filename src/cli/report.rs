@@ -1,9 +1,13 @@
 //! `bmod report --html`: formulas, data, solution, ranges, figures and certificate on one page that needs nothing else.
 
 use super::args::{EXECUTION, ReportArgs};
-use super::commands::{Task, carry_out, name, options};
-use super::host::{Output, write_whole};
-use crate::check::symbols::SymbolKind;
+use super::commands::{
+    Status, Task, carry_out, complain, name, stem, temporary_folder, write_file,
+};
+use super::derive::study_options;
+use super::host::Output;
+use crate::check::symbols::{Symbol, SymbolKind};
+use crate::data::universe::Label;
 use crate::formulation::derive::Primal;
 use crate::formulation::derived::Kind;
 use crate::formulation::page::{Block, Page, STYLE, body};
@@ -12,7 +16,7 @@ use crate::formulation::side::short;
 use crate::formulation::{explain, range, show, study};
 use crate::model::origin::Blocks;
 use crate::report::json::SolveReport;
-use crate::run::{Machine, Options, Studied, StudyChoice};
+use crate::run::{Machine, Studied};
 use std::fmt::Write;
 use std::path::Path;
 
@@ -26,24 +30,9 @@ const v=r=>{const x=r.cells[n].textContent.replace('−','-').replace('∞','Inf
 [...b.rows].sort((p,q)=>{const x=v(p),y=v(q);return d*(x<y?-1:x>y?1:0)}).forEach(r=>b.append(r))}));";
 
 /// Carries out `bmod report`; its exit status.
-pub fn report(a: &ReportArgs) -> u8 {
-    let Ok(out) = tempfile::tempdir() else {
-        eprintln!("bmod: no folder for temporary files");
-        return EXECUTION;
-    };
-    let base = match options(&a.solve) {
-        Ok(o) => o,
-        Err(status) => return status,
-    };
-    let options = Options {
-        quiet: true,
-        study: Some(StudyChoice {
-            model: a.chosen.name.clone(),
-            number: a.chosen.number,
-            generate_only: false,
-        }),
-        ..base
-    };
+pub(super) fn report(a: &ReportArgs) -> Status {
+    let out = temporary_folder()?;
+    let options = study_options(&a.solve, &a.chosen)?;
     let task = Task {
         out: out.path(),
         ..Task::new(&a.model, Output::Quiet)
@@ -57,33 +46,22 @@ pub fn report(a: &ReportArgs) -> u8 {
         }
     });
     let Some(number) = studied else {
-        eprintln!(
-            "bmod: nothing is solved in {}: there is nothing to report",
-            name(&a.model)
-        );
-        return finished.end.exit().max(EXECUTION);
+        let status = finished.end.exit().max(EXECUTION);
+        let file = name(&a.model);
+        let message = format!("nothing is solved in {file}: there is nothing to report");
+        return Err(complain(status, message));
     };
     let solves = &finished.report.solves;
     text.push_str(&certificate(solves.get(number - 1).or(solves.last())));
     text.push_str(&figures(out.path()));
-    let title = a
-        .model
-        .file
-        .file_stem()
-        .unwrap_or_default()
-        .to_string_lossy();
+    let title = stem(&a.model);
     let page = format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>{0}</title>\n<style>{STYLE}\
          th{{cursor:pointer}}svg{{max-width:100%;height:auto}}</style>\n</head>\n<body>\n<h1>{0}</h1>\n{text}<script>{SCRIPT}</script>\n</body>\n</html>\n",
         plain(&title)
     );
-    match write_whole(&a.html, page.as_bytes()) {
-        Ok(()) => finished.end.exit(),
-        Err(e) => {
-            eprintln!("bmod: {} could not be written: {e}", a.html.display());
-            EXECUTION
-        }
-    }
+    write_file(&a.html, page.as_bytes())?;
+    Ok(finished.end.exit())
 }
 
 fn sections(m: &Machine, primal: &Primal, studied: &Studied) -> String {
@@ -132,20 +110,34 @@ fn data(m: &Machine, primal: &Primal) -> Page {
             continue;
         }
         let table = m.store.table(symbol.table);
-        out.push(Block::Heading(heading(&symbol.name, &symbol.text)));
-        let mut head = m.symbols.domain_names(symbol);
-        head.push("value".into());
-        let rows = table.iter().take(MAX_RECORDS).map(|(key, v)| {
-            let labels = key.iter().map(|l| m.store.universe.name(*l).to_string());
-            labels.chain([short(v)]).collect()
-        });
-        out.push(Block::Table(head, rows.collect()));
-        if table.len() > MAX_RECORDS {
-            out.push(Block::Words(format!(
-                "… and {} more",
-                table.len() - MAX_RECORDS
-            )));
-        }
+        let rows = table.iter().map(|(key, v)| (key, [v]));
+        out.extend(records(m, symbol, ["value"], rows, table.len()));
+    }
+    out
+}
+
+/// The first records of a symbol, and how many more there are.
+fn records<'a, const N: usize>(
+    m: &Machine,
+    symbol: &Symbol,
+    columns: [&str; N],
+    rows: impl Iterator<Item = (&'a [Label], [f64; N])>,
+    count: usize,
+) -> Page {
+    let heading = match symbol.text.is_empty() {
+        true => symbol.name.to_string(),
+        false => format!("{}: {}", symbol.name, symbol.text),
+    };
+    let mut head = m.symbols.domain_names(symbol);
+    head.extend(columns.map(String::from));
+    let rows = rows.take(MAX_RECORDS).map(|(key, numbers)| {
+        let labels = key.iter().map(|l| m.store.universe.name(*l).to_string());
+        labels.chain(numbers.map(short)).collect()
+    });
+    let mut out = vec![Block::Heading(heading), Block::Table(head, rows.collect())];
+    if count > MAX_RECORDS {
+        let more = count - MAX_RECORDS;
+        out.push(Block::Words(format!("… and {more} more")));
     }
     out
 }
@@ -161,52 +153,20 @@ fn solution(m: &Machine, primal: &Primal) -> Page {
     let mut tables = |blocks: &Blocks, head: [&str; 4], numbers: &dyn Fn(usize) -> [f64; 4]| {
         for b in &blocks.list {
             let symbol = m.symbols.get(b.symbol);
-            out.push(Block::Heading(heading(&symbol.name, &symbol.text)));
-            let mut names = m.symbols.domain_names(symbol);
-            names.extend(head.map(String::from));
-            let rows = (b.start..b.start + b.len).take(MAX_RECORDS).map(|i| {
-                let labels = b
-                    .key(i)
-                    .iter()
-                    .map(|l| m.store.universe.name(*l).to_string());
-                labels.chain(numbers(i as usize).map(short)).collect()
-            });
-            out.push(Block::Table(names, rows.collect()));
-            if b.len as usize > MAX_RECORDS {
-                out.push(Block::Words(format!(
-                    "… and {} more",
-                    b.len as usize - MAX_RECORDS
-                )));
-            }
+            let rows = (b.start..b.start + b.len).map(|i| (b.key(i), numbers(i as usize)));
+            out.extend(records(m, symbol, head, rows, b.len as usize));
         }
     };
-    tables(
-        &g.origin.columns,
-        ["lower", "level", "upper", "marginal"],
-        &|j| [c.lower[j], a.level[j], c.upper[j], a.column_marginal[j]],
-    );
-    tables(
-        &g.origin.rows,
-        ["level", "right side", "slack", "marginal"],
-        &|i| {
-            let rhs = g.instance.rows.rhs[i];
-            [
-                a.activity[i],
-                rhs,
-                (a.activity[i] - rhs).abs(),
-                a.row_marginal[i],
-            ]
-        },
-    );
+    let head = ["lower", "level", "upper", "marginal"];
+    tables(&g.origin.columns, head, &|j| {
+        [c.lower[j], a.level[j], c.upper[j], a.column_marginal[j]]
+    });
+    let head = ["level", "right side", "slack", "marginal"];
+    tables(&g.origin.rows, head, &|i| {
+        let (level, rhs) = (a.activity[i], g.instance.rows.rhs[i]);
+        [level, rhs, (level - rhs).abs(), a.row_marginal[i]]
+    });
     out
-}
-
-/// A symbol with its explanatory text.
-fn heading(name: &str, text: &str) -> String {
-    match text.is_empty() {
-        true => name.to_string(),
-        false => format!("{name}: {text}"),
-    }
 }
 
 /// How the solve ended, and how well.
@@ -221,19 +181,13 @@ fn certificate(solve: Option<&SolveReport>) -> String {
 
 /// The figures that the model drew.
 fn figures(folder: &Path) -> String {
-    let mut files: Vec<_> = std::fs::read_dir(folder)
-        .into_iter()
-        .flatten()
-        .flatten()
-        .map(|f| f.path())
-        .collect();
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let mut files: Vec<_> = entries.map(|f| f.path()).collect();
+    files.retain(|f| f.extension().is_some_and(|e| e == "svg"));
     files.sort();
     let mut out = String::new();
-    for f in files
-        .iter()
-        .filter(|f| f.extension().is_some_and(|e| e == "svg"))
-    {
-        let Ok(svg) = std::fs::read_to_string(f) else {
+    for f in files {
+        let Ok(svg) = std::fs::read_to_string(&f) else {
             continue;
         };
         // The XML declaration has no place inside a page.

@@ -1,13 +1,13 @@
 //! `bmod show`: a model as formulas. Nothing is run, unless its numbers are asked for.
 
 use super::args::{ChosenArgs, EXECUTION, ShowArgs};
-use super::commands::{compiled, name};
+use super::commands::{Status, compiled, complain, name};
 use super::derive::{format, studied, tell};
 use crate::formulation::{page, show};
 use crate::run::{Machine, Options};
 
 /// Carries out `bmod show`; its exit status.
-pub fn show(a: &ShowArgs) -> u8 {
+pub(super) fn show(a: &ShowArgs) -> Status {
     if a.numbers {
         let chosen = ChosenArgs {
             name: a.name.clone(),
@@ -22,15 +22,10 @@ pub fn show(a: &ShowArgs) -> u8 {
     }
     compiled(&a.model, &mut |program, host| {
         let (m, code) = Machine::new(program, host, Options::default());
-        let chosen = match show::choose(&m, &code, a.name.as_deref()) {
-            Ok(c) => c,
-            Err(why) => {
-                eprintln!("bmod: {}: {why}", name(&a.model));
-                return EXECUTION;
-            }
-        };
+        let chosen = show::choose(&m, &code, a.name.as_deref())
+            .map_err(|why| complain(EXECUTION, format!("{}: {why}", name(&a.model))))?;
         let (page, f) = show::page(&m, &code, &chosen, None);
         tell(&page::write(&page, format(a.format), &f.name));
-        0
+        Ok(0)
     })
 }

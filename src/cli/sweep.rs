@@ -4,16 +4,17 @@
 //! repeated; half a line that a killed process has left is cut off. `results.csv` is written whole at the end, in the order of the grid.
 
 use super::args::{EXECUTION, SweepArgs, USAGE};
-use super::host::{interrupted, watch_ctrl_c, write_whole};
+use super::commands::{Status, complain, stem};
+use super::host::{interrupted, styled, watch_ctrl_c, write_whole};
 use crate::{Control, Error, Model, ModelStatus, Options, Run, SymbolKind};
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressBar;
 use serde_json::{Map, Value, json};
 use std::collections::{BTreeMap, HashMap};
 use std::fs::{File, OpenOptions};
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 type Row = Map<String, Value>;
@@ -25,24 +26,13 @@ type Point = Vec<(String, String)>;
 const MOST_VALUES: f64 = 1e6;
 
 /// Carries out `bmod sweep`; its exit status.
-pub(super) fn sweep(a: &SweepArgs) -> u8 {
-    let points = match points(&a.model.define) {
-        Ok(points) => points,
-        Err(why) => {
-            eprintln!("bmod: {why}");
-            return USAGE;
-        }
-    };
-    if let Some(jobs) = a.slurm {
-        return slurm(a, jobs, points.len());
+pub(super) fn sweep(a: &SweepArgs) -> Status {
+    let points = points(&a.model.define).map_err(|why| complain(USAGE, why))?;
+    match a.slurm {
+        Some(jobs) => slurm(a, jobs, points.len()),
+        None => carry_out(a, &points),
     }
-    match carry_out(a, &points) {
-        Ok(status) => status,
-        Err(why) => {
-            eprintln!("bmod: {why}");
-            EXECUTION
-        }
-    }
+    .map_err(|why| complain(EXECUTION, why))
 }
 
 /// All combinations; the values of the last name vary fastest.
@@ -85,13 +75,19 @@ fn values(text: &str) -> Result<Vec<String>, String> {
     Ok(text.split(',').map(|v| v.trim().to_string()).collect())
 }
 
-/// The model at a point: a name is a `%name%` of the text, and a scalar of the model if it has one.
-fn model_at(base: &Model, point: &Point) -> Model {
+/// The model with each name of a point as a `%name%` of the text.
+fn defined(base: &Model, point: &Point) -> Model {
     let mut model = base.clone();
-    model.keep(true);
     for (name, value) in point {
         model.define(name, value);
     }
+    model
+}
+
+/// The model at a point: a name is a `%name%` of the text, and a scalar of the model if it has one.
+fn model_at(base: &Model, point: &Point) -> Model {
+    let mut model = defined(base, point);
+    model.keep(true);
     let declared = model.check();
     for (name, value) in point {
         if let (true, Ok(v)) = (is_scalar(&declared, name), value.parse()) {
@@ -116,11 +112,7 @@ fn check_names(base: &Model, points: &[Point]) -> Result<(), String> {
         if idle.is_empty() {
             return Ok(());
         }
-        let mut model = base.clone();
-        for (name, value) in point {
-            model.define(name, value);
-        }
-        let declared = model.check();
+        let declared = defined(base, point).check();
         if !declared.succeeded() {
             return Ok(());
         }
@@ -268,7 +260,6 @@ fn carry_out(a: &SweepArgs, points: &[Point]) -> Result<u8, String> {
     let folder = &a.out;
     let in_folder = |e: std::io::Error| format!("{}: {e}", folder.display());
     let store = Mutex::new(Store::open(folder, &own).map_err(in_folder)?);
-    let lock = || store.lock().unwrap_or_else(PoisonError::into_inner);
     let next = AtomicUsize::new(part - 1);
     let rows: Mutex<BTreeMap<usize, Row>> = Mutex::default();
     let failed: Mutex<Option<String>> = Mutex::default();
@@ -282,13 +273,9 @@ fn carry_out(a: &SweepArgs, points: &[Point]) -> Result<u8, String> {
             let Some(point) = points.get(n) else { break };
             let model = model_at(&base, point);
             let key = model.digest(&options, &outputs);
-            let found = lock().find(&key, &model).cloned();
-            let done = |row: Row| {
-                let mut rows = rows.lock().unwrap_or_else(PoisonError::into_inner);
-                rows.insert(n, row);
-            };
+            let found = locked(&store).find(&key, &model).cloned();
             if let Some(row) = found {
-                done(row);
+                locked(&rows).insert(n, row);
             } else {
                 let run = model.run(&options);
                 // What Ctrl-C has stopped is run again next time.
@@ -302,12 +289,12 @@ fn carry_out(a: &SweepArgs, points: &[Point]) -> Result<u8, String> {
                         let own = [("key", json!(key)), ("reads", json!(run.reads()))];
                         let own = own.map(|(k, v)| (k.to_string(), v));
                         let all = Row::from_iter(own.into_iter().chain(point).chain(found));
-                        lock().add(&all).map_err(in_folder)?;
-                        done(all);
+                        locked(&store).add(&all).map_err(in_folder)?;
+                        locked(&rows).insert(n, all);
                         Ok(())
                     });
                 if let Err(why) = stored {
-                    *failed.lock().unwrap_or_else(PoisonError::into_inner) = Some(why);
+                    *locked(&failed) = Some(why);
                     break;
                 }
             }
@@ -331,10 +318,10 @@ fn carry_out(a: &SweepArgs, points: &[Point]) -> Result<u8, String> {
         over.store(true, Ordering::Relaxed);
     });
     bar.finish_and_clear();
-    if let Some(why) = failed.into_inner().unwrap_or_else(PoisonError::into_inner) {
+    if let Some(why) = locked(&failed).take() {
         return Err(why);
     }
-    let rows = rows.into_inner().unwrap_or_else(PoisonError::into_inner);
+    let rows = locked(&rows);
     let rows: Vec<&Row> = rows.values().collect();
     if parts == 1 {
         let path = folder.join("results.csv");
@@ -343,6 +330,10 @@ fn carry_out(a: &SweepArgs, points: &[Point]) -> Result<u8, String> {
         write_whole(&path, &text).map_err(in_folder)?;
     }
     Ok(summary(&rows, points.len().div_ceil(parts), folder))
+}
+
+fn locked<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
+    shared.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// A number where it is one.
@@ -419,13 +410,12 @@ fn bar(count: usize) -> ProgressBar {
     if !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();
     }
-    let style = ProgressStyle::with_template("{wide_bar} {pos}/{len} runs, {eta} left");
-    ProgressBar::new(count as u64)
-        .with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+    let template = "{wide_bar} {pos}/{len} runs, {eta} left";
+    styled(ProgressBar::new(count as u64), template)
 }
 
 /// Writes the script of a job array: each of its tasks takes every N-th point.
-fn slurm(a: &SweepArgs, jobs: usize, points: usize) -> u8 {
+fn slurm(a: &SweepArgs, jobs: usize, points: usize) -> Result<u8, String> {
     let jobs = jobs.min(points).max(1);
     let quoted = |t: String| format!("'{}'", t.replace('\'', r"'\''"));
     let mut words = vec!["bmod".to_string(), "sweep".into()];
@@ -451,12 +441,7 @@ fn slurm(a: &SweepArgs, jobs: usize, points: usize) -> u8 {
         words.push("--sandbox".into());
     }
     let command = words.join(" ");
-    let name = a
-        .model
-        .file
-        .file_stem()
-        .unwrap_or_default()
-        .to_string_lossy();
+    let name = stem(&a.model);
     let text = format!(
         "#!/bin/bash\n#SBATCH --job-name={name}\n#SBATCH --array=1-{jobs}\n#SBATCH --cpus-per-task={cores}\n\n\
          # {points} runs in {jobs} jobs. Runs that are there are not repeated: submit it again after a failure.\n\
@@ -465,25 +450,18 @@ fn slurm(a: &SweepArgs, jobs: usize, points: usize) -> u8 {
         cores = a.jobs,
     );
     let path: PathBuf = a.out.join("sweep.sh");
-    let written =
-        std::fs::create_dir_all(&a.out).and_then(|()| write_whole(&path, text.as_bytes()));
-    match written {
-        Ok(()) => {
-            println!(
-                "written: {}; submit it with `sbatch {}`",
-                path.display(),
-                match path.to_string_lossy() {
-                    p if p.contains(' ') => quoted(p.into_owned()),
-                    p => p.into_owned(),
-                }
-            );
-            0
-        }
-        Err(e) => {
-            eprintln!("bmod: {}: {e}", path.display());
-            EXECUTION
-        }
-    }
+    std::fs::create_dir_all(&a.out)
+        .and_then(|()| write_whole(&path, text.as_bytes()))
+        .map_err(|e| format!("{}: {e}", path.display()))?;
+    let script = match path.to_string_lossy() {
+        p if p.contains(' ') => quoted(p.into_owned()),
+        p => p.into_owned(),
+    };
+    println!(
+        "written: {}; submit it with `sbatch {script}`",
+        path.display()
+    );
+    Ok(0)
 }
 
 #[cfg(test)]

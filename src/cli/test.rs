@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::args::{EXECUTION, ModelArgs, TestArgs, USAGE};
-use super::commands::{carry_out_silently, options};
+use super::commands::{Status, carry_out_silently, complain, options};
 use crate::claims::{broken, claims};
 use crate::run::Options;
 
@@ -11,13 +11,11 @@ use crate::run::Options;
 pub const TOLERANCE: f64 = 1e-6;
 
 /// Carries out `bmod test`; 0 if every claim of every model holds.
-pub fn test(a: &TestArgs) -> u8 {
+pub(super) fn test(a: &TestArgs) -> Status {
     let mut models = Vec::new();
     for path in &a.paths {
-        if let Err(e) = collect(path, &mut models) {
-            eprintln!("bmod: {}: {e}", path.display());
-            return USAGE;
-        }
+        collect(path, &mut models)
+            .map_err(|e| complain(USAGE, format!("{}: {e}", path.display())))?;
     }
     let (mut passed, mut failed, mut silent) = (0, 0, 0);
     for path in models {
@@ -33,14 +31,10 @@ pub fn test(a: &TestArgs) -> u8 {
             file: path.clone(),
             ..a.model()
         };
-        let base = match options(&a.solve) {
-            Ok(o) => o,
-            Err(status) => return status,
-        };
         let options = Options {
             quiet: true,
             collect: false,
-            ..base
+            ..options(&a.solve)?
         };
         let mut wrong = Vec::new();
         let status = carry_out_silently(&model, options, &mut |m| {
@@ -50,24 +44,19 @@ pub fn test(a: &TestArgs) -> u8 {
             }
         })
         .map_or_else(|status| status, |finished| finished.end.exit());
-        let ok = status == 0 && wrong.is_empty();
-        println!(
-            "{}  {}",
-            if ok { "ok    " } else { "FAILED" },
-            path.display()
-        );
+        let (word, count) = match status == 0 && wrong.is_empty() {
+            true => ("ok    ", &mut passed),
+            false => ("FAILED", &mut failed),
+        };
+        *count += 1;
+        println!("{word}  {}", path.display());
         wrong.iter().for_each(|w| println!("{w}"));
-        if ok {
-            passed += 1;
-        } else {
-            failed += 1;
-        }
     }
     println!("{passed} passed, {failed} failed");
     if silent > 0 {
         println!("{silent} without claims");
     }
-    if failed > 0 { EXECUTION } else { 0 }
+    Ok(if failed > 0 { EXECUTION } else { 0 })
 }
 
 /// The models of a folder and the folders in it, or a model.

@@ -6,16 +6,15 @@ use std::process::Command;
 use std::time::{Duration, SystemTime};
 
 use super::args::{EXECUTION, WatchArgs};
+use super::commands::{Status, complain};
 
 /// How often the files are looked at.
 const INTERVAL: Duration = Duration::from_millis(200);
 
 /// Carries out `bmod watch`: a run as a process of its own each time, until Ctrl-C.
-pub fn watch(a: &WatchArgs) -> u8 {
-    let Ok(program) = std::env::current_exe() else {
-        eprintln!("bmod: the program does not find itself");
-        return EXECUTION;
-    };
+pub(super) fn watch(a: &WatchArgs) -> Status {
+    let program = std::env::current_exe()
+        .map_err(|_| complain(EXECUTION, "the program does not find itself"))?;
     let folder = match a.file.parent() {
         Some(p) if !p.as_os_str().is_empty() => p.to_path_buf(),
         _ => PathBuf::from("."),
@@ -36,14 +35,10 @@ pub fn watch(a: &WatchArgs) -> u8 {
         let saved = modified(&a.file);
         let mut run = Command::new(&program);
         run.arg("run").arg(&a.file).args(&a.arguments);
-        if let Err(e) = run.status() {
-            eprintln!("bmod: the run could not be started: {e}");
-            return EXECUTION;
-        }
-        println!(
-            "\nwaiting for a change in {} (Ctrl-C ends)",
-            folder.display()
-        );
+        run.status()
+            .map_err(|e| complain(EXECUTION, format!("the run could not be started: {e}")))?;
+        let shown = folder.display();
+        println!("\nwaiting for a change in {shown} (Ctrl-C ends)");
         // What the run itself wrote is no change; what was saved meanwhile is.
         seen = (modified(&a.file) == saved).then(|| stamp(&folder));
     }

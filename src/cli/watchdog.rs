@@ -4,7 +4,6 @@
 //! Loops ask for the time themselves, and a solver that is stopped gives the best point it has seen. What asks for nothing (one
 //! factorisation in a library, one huge allocation) is ended here.
 
-use std::io::Write;
 use std::path::PathBuf;
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -12,7 +11,7 @@ use std::time::{Duration, Instant};
 use super::args::EXECUTION;
 use super::host::{Output, WRITING};
 use crate::report::diagnostic::{Diagnostic, Severity};
-use crate::report::json::{Report, RunStatus, SharedReport, SolveReport};
+use crate::report::json::{RunStatus, SharedReport, SolveReport};
 use crate::report::summary;
 use crate::solve::{ModelStatus, SolverStatus};
 use crate::system;
@@ -114,7 +113,7 @@ impl Watch {
     fn end(&self, code: &'static str, message: &str) -> ! {
         let mut known = std::mem::take(&mut *self.report.get());
         let left_out = known.shorten();
-        let solving = known.solving.map(|s| SolveReport {
+        let solving = known.solving.take().map(|s| SolveReport {
             model_status: ModelStatus::NoSolution.into(),
             solver_status: SolverStatus::ResourceInterrupt.into(),
             message: Some("ended by the limit; its point is not known".into()),
@@ -135,22 +134,10 @@ impl Watch {
         };
         eprintln!("{code}\n\n  x {}", diagnostic.message);
         if let Some(solve) = &solving {
-            let text = summary::solve(solve, false);
-            let _ = match self.output {
-                Output::Standard => std::io::stdout().write_all(text.as_bytes()),
-                Output::Error => std::io::stderr().write_all(text.as_bytes()),
-                Output::Quiet => Ok(()),
-            };
+            self.output.write(&summary::solve(solve, false));
         }
-        let mut report = Report {
-            status: RunStatus::ExecutionError,
-            solving: None,
-            solves: known.solves,
-            displays: known.displays,
-            files: known.files,
-            diagnostics: known.diagnostics,
-            ..Report::new(&self.file)
-        };
+        let mut report = known.of(&self.file);
+        report.status = RunStatus::ExecutionError;
         report.solves.extend(solving);
         report.diagnostics.push(diagnostic);
         if let Some(path) = &self.json {

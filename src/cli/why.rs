@@ -3,37 +3,29 @@
 use std::path::Path;
 
 use super::args::WhyArgs;
-use super::commands::{carry_out_silently, name, options, write_report};
+use super::commands::{Status, carry_out_silently, name, options, write_report};
 use crate::report::summary;
 use crate::run::Options;
 use crate::session;
 
 /// Carries out `bmod why`; its exit status.
-pub fn why(a: &WhyArgs) -> u8 {
-    let base = match options(&a.solve) {
-        Ok(o) => o,
-        Err(status) => return status,
-    };
+pub(super) fn why(a: &WhyArgs) -> Status {
     let options = Options {
         why: true,
         quiet: true,
         collect: a.json.is_some(),
-        ..base
+        ..options(&a.solve)?
     };
     // The model's own output and files are not wanted here.
-    let finished = match carry_out_silently(&a.model, options, &mut |_| {}) {
-        Ok(f) => f,
-        Err(status) => return status,
-    };
+    let finished = carry_out_silently(&a.model, options, &mut |_| {})?;
     let status = finished.end.exit();
-    match &a.json {
-        Some(path) if path == Path::new("-") => {}
-        _ => print!("{}", text(&finished)),
+    if a.json.as_deref() != Some(Path::new("-")) {
+        print!("{}", text(&finished));
     }
-    match &a.json {
+    Ok(match &a.json {
         Some(path) => status.max(write_report(finished, &name(&a.model), path)),
         None => status,
-    }
+    })
 }
 
 fn text(finished: &session::Finished) -> String {

@@ -178,23 +178,12 @@ impl Editor {
         for d in &found {
             let (file, d) = analysis.diagnostic(d, map, &main);
             all.push(file.clone());
-            match out.iter_mut().find(|f| f.file == file) {
-                Some(f) => f.diagnostics.push(d),
-                None => out.push(FileDiagnostics {
-                    file,
-                    diagnostics: vec![d],
-                }),
-            }
+            diagnostics_of(&mut out, file).push(d);
         }
         analysis.told = out.iter().map(|f| f.file.clone()).collect();
         all.extend(told_before);
         for file in all {
-            if !out.iter().any(|f| f.file == file) {
-                out.push(FileDiagnostics {
-                    file,
-                    diagnostics: Vec::new(),
-                });
-            }
+            diagnostics_of(&mut out, file);
         }
         // The last program without errors stays until there is another.
         analysis.good = match wrong {
@@ -206,14 +195,22 @@ impl Editor {
         // A file that this model does not include after all is checked with another one, or alone.
         if self.main_of(file) != main {
             for f in self.check(file) {
-                match out.iter_mut().find(|o| o.file == f.file) {
-                    Some(o) => o.diagnostics.extend(f.diagnostics),
-                    None => out.push(f),
-                }
+                diagnostics_of(&mut out, f.file).extend(f.diagnostics);
             }
         }
         out
     }
+}
+
+/// What is wrong in a file of the list, which gets it if it has not.
+fn diagnostics_of(list: &mut Vec<FileDiagnostics>, file: String) -> &mut Vec<Diagnostic> {
+    let at = list.iter().position(|f| f.file == file);
+    let at = at.unwrap_or(list.len());
+    if at == list.len() {
+        let diagnostics = Vec::new();
+        list.push(FileDiagnostics { file, diagnostics });
+    }
+    &mut list[at].diagnostics
 }
 
 impl Analysis {

@@ -9,7 +9,6 @@ use crate::check::functions::{attribute_word, data_word, label_word};
 use crate::check::node::SymbolId;
 use crate::check::symbols::{Store, Symbols};
 use crate::report::json::Number;
-use crate::syntax::ast::VariableKind;
 use serde::Serialize;
 
 /// A model as formulas: objective, equations, variables, with the names of the text. As JSON with `serde`.
@@ -218,21 +217,13 @@ pub fn algebra(symbols: &Symbols, store: &Store, f: &Formulation) -> Algebra {
     let own = f.own.iter().map(|&v| AlgebraVariable {
         name: n.name(v),
         domain: symbols.domain_names(symbols.get(v)),
-        sign: match super::derive::kind(symbols, v) {
-            VariableKind::Positive => "positive",
-            VariableKind::Negative => "negative",
-            _ => "free",
-        },
+        sign: Sign::of(super::derive::kind(symbols, v)).word(),
         multiplier_of: None,
     });
     let multipliers = f.multipliers.iter().map(|m| AlgebraVariable {
         name: m.name.clone(),
         domain: domain(&m.domain),
-        sign: match m.sign {
-            Sign::Free => "free",
-            Sign::Positive => "positive",
-            Sign::Negative => "negative",
-        },
+        sign: m.sign.word(),
         multiplier_of: Some(match m.origin {
             Origin::Row(s) => ("rows", n.name(s)),
             Origin::Lower(s) => ("lower bounds", n.name(s)),
@@ -271,10 +262,7 @@ impl Naming<'_> {
     }
 
     fn variable(&self, v: Variable) -> String {
-        match v {
-            Variable::Own(s) => self.name(s),
-            Variable::Multiplier(n) => self.f.multipliers[n].name.clone(),
-        }
+        self.f.variable(self.symbols, v)
     }
 
     /// The equation without its terms; its indices have names until the number is given to [`Names::leave`].

@@ -72,44 +72,39 @@ pub fn assigned(
         if !own.contains(&v) || !offsets.iter().all(is_bound) {
             return;
         }
-        let whole = a.covers || symbols.get(v).dim() == 0;
-        if depth == 0 {
+        let covers = depth > 0 || a.covers || symbols.get(v).dim() == 0;
+        let (binder, key, value) = if depth == 0 {
             let binder = lowering.domain(&a.domain);
             let node = Node::data(NodeKind::Var(v, a.key.clone()), c.span);
             let Expr::Variable(_, key) = lowering.expr(&node) else {
                 return;
             };
-            let value = lowering.expr(&a.value);
-            for offset in offsets {
-                out.retain(|a| !(whole && (a.variable, a.offset) == (v, offset)));
-                out.push(Assigned {
-                    variable: v,
-                    offset,
-                    binder: binder.clone(),
-                    key: key.clone(),
-                    value: value.clone(),
-                    covers: whole,
-                });
-            }
-            return;
-        }
-        let indices: Vec<IndexId> = domain_of(symbols, v)
-            .iter()
-            .map(|s| lowering.indices.add(*s))
-            .collect();
-        let key: Vec<Part> = indices.iter().map(|k| Part::Index(*k)).collect();
+            (binder, key, Some(lowering.expr(&a.value)))
+        } else {
+            let domain = domain_of(symbols, v);
+            let indices = domain.iter().map(|s| lowering.indices.add(*s));
+            let indices: Vec<IndexId> = indices.collect();
+            let key = indices.iter().map(|k| Part::Index(*k)).collect();
+            let conditions = Vec::new();
+            (
+                Binder {
+                    indices,
+                    conditions,
+                },
+                key,
+                None,
+            )
+        };
         for offset in offsets {
-            out.retain(|a| (a.variable, a.offset) != (v, offset));
+            let itself = || Expr::Data(Source::Attribute(v, offset), key.clone());
+            out.retain(|a| !(covers && (a.variable, a.offset) == (v, offset)));
             out.push(Assigned {
                 variable: v,
                 offset,
-                binder: Binder {
-                    indices: indices.clone(),
-                    conditions: Vec::new(),
-                },
+                binder: binder.clone(),
                 key: key.clone(),
-                value: Expr::Data(Source::Attribute(v, offset), key.clone()),
-                covers: true,
+                value: value.clone().unwrap_or_else(itself),
+                covers,
             });
         }
     };

@@ -1,5 +1,6 @@
 //! The sets and data that a derived model needs, as statements with the values they had at the solve.
 
+use super::derive::domain_of;
 use super::text::attribute_name;
 use super::tree::*;
 use super::{NewData, Row};
@@ -140,20 +141,16 @@ impl<'a> Data<'a> {
         }
         for &p in &self.parameters {
             let symbol = self.symbols.get(p);
-            let table = self.store.table(symbol.table);
             let head = self.head(p, &symbol.name);
-            let all = records(table).map(|(k, v)| (k.to_vec(), v));
+            let all = records(self.store.table(symbol.table)).map(|(k, v)| (k.to_vec(), v));
             out.records("Parameter", &head, &symbol.text, false, all);
         }
         for &(s, offset) in &self.attributes {
             let symbol = self.symbols.get(s);
             let table = self.store.table(symbol.table + offset);
             let head = self.head(s, &attribute_name(self.symbols, s, offset));
-            let text = format!(
-                "{}.{} at the solve",
-                symbol.name,
-                crate::check::functions::attribute_word(offset)
-            );
+            let word = crate::check::functions::attribute_word(offset);
+            let text = format!("{}.{word} at the solve", symbol.name);
             let default = table.default_value();
             if default == 0.0 {
                 let all = records(table).map(|(k, v)| (k.to_vec(), v));
@@ -162,11 +159,7 @@ impl<'a> Data<'a> {
             }
             // What is not stored has another value than 0.
             let mut keys = vec![Vec::new()];
-            for p in &symbol.domain {
-                let set = match p {
-                    DomainPosition::Set(d) => self.symbols.root(*d),
-                    _ => UNIVERSE,
-                };
+            for set in domain_of(self.symbols, s) {
                 let members = self.store.table(self.symbols.get(set).table);
                 let longer = |k: &Vec<Label>| {
                     let k = k.clone();
@@ -234,19 +227,16 @@ impl<'a> Data<'a> {
     }
 
     fn head(&self, s: SymbolId, name: &str) -> String {
-        head(
-            self.symbols,
-            name,
-            &super::derive::domain_of(self.symbols, s),
-        )
+        head(self.symbols, name, &domain_of(self.symbols, s))
     }
 }
 
-fn head(symbols: &Symbols, name: &str, domain: &[SymbolId]) -> String {
+/// A name with the sets that it runs over.
+pub(super) fn head(symbols: &Symbols, name: &str, domain: &[SymbolId]) -> String {
     let sets: Vec<&str> = domain.iter().map(|s| &*symbols.get(*s).name).collect();
-    match sets.is_empty() || sets == ["*"] {
-        true if sets.is_empty() => name.to_string(),
-        _ => format!("{name}({})", sets.join(",")),
+    match sets.is_empty() {
+        true => name.to_string(),
+        false => format!("{name}({})", sets.join(",")),
     }
 }
 

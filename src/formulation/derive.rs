@@ -201,11 +201,10 @@ impl<'a> Derivation<'a> {
         }
         let e = &self.primal.equations[k];
         let whole = -e.left.clone() + e.right.clone();
-        let zero = |e| match e {
-            Expr::Variable(Variable::Own(s), _) if s == z => Some(Expr::Number(0.0)),
-            e => Some(e),
-        };
-        let rest = whole.map(&mut { zero }, &mut |p| Some(p.clone()))?;
+        let rest = whole.map_nodes(&|e| match e {
+            Expr::Variable(Variable::Own(s), _) if s == z => Expr::Number(0.0),
+            e => e,
+        });
         Some(Eliminated {
             equation: k,
             function: rest / a,
@@ -312,11 +311,7 @@ impl<'a> Derivation<'a> {
 
     /// The sign of a multiplier as it is shown.
     pub fn flipped(&self, sign: Sign) -> Sign {
-        match (sign, self.flip) {
-            (Sign::Positive, true) => Sign::Negative,
-            (Sign::Negative, true) => Sign::Positive,
-            (s, _) => s,
-        }
+        if self.flip { sign.opposite() } else { sign }
     }
 
     /// A multiplier with its key, as an expression with GAMS's sign.

@@ -128,9 +128,8 @@ fn linear_dual(
 ) -> Result<Derived, Box<Diagnostic>> {
     refuse_dual(m, primal, studied)?;
     let failed = |why: String| {
-        Diagnostic::execution("E0431", studied.span)
-            .says(format!("the dual cannot be derived: {why}"))
-            .label("of this solve")
+        let message = format!("the dual cannot be derived: {why}");
+        of_solve("E0431", studied, message)
     };
     let (symbols, store) = (&m.symbols, &m.store);
     let shown = dual::dual(symbols, store, primal, true).map_err(failed)?;
@@ -164,14 +163,21 @@ fn linear_dual(
     })
 }
 
+/// A refusal whose place is the solve.
+pub(super) fn of_solve(
+    code: &'static str,
+    studied: &Studied,
+    message: impl Into<String>,
+) -> Diagnostic {
+    Diagnostic::execution(code, studied.span)
+        .says(message)
+        .label("of this solve")
+}
+
 /// Whether a model has a dual of this kind at all.
 fn refuse_dual(m: &Machine, primal: &Primal, studied: &Studied) -> Result<(), Box<Diagnostic>> {
     let instance = &primal.generated.instance;
-    let no = |message: String| {
-        Diagnostic::execution("E0431", studied.span)
-            .says(message)
-            .label("of this solve")
-    };
+    let no = |message: String| of_solve("E0431", studied, message);
     if primal.objective.is_none() {
         let message = format!(
             "the model `{}` has no objective, and so no dual",
@@ -191,23 +197,17 @@ fn refuse_dual(m: &Machine, primal: &Primal, studied: &Studied) -> Result<(), Bo
         Some(e) => format!("`{}` is {what}", m.symbols.get(e).name),
         None => format!("its objective is {what}"),
     };
-    let row = row.and_then(|e| definition(m, e));
     let message =
         format!("the dual of a linear or convex quadratic program is asked for, and {why}");
-    let span = row.map_or(studied.span, |d| d.span);
-    let refusal = Diagnostic::execution("E0431", span)
-        .says(message)
-        .label(if row.is_some() {
-            "this equation"
-        } else {
-            "of this solve"
-        })
-        .help("`bmod kkt` derives the optimality conditions of a nonlinear program");
-    Err(match row {
-        Some(_) => refusal.other(studied.span, "at this solve"),
-        None => refusal,
-    }
-    .into())
+    let refusal = match row.and_then(|e| definition(m, e)) {
+        Some(d) => Diagnostic::execution("E0431", d.span)
+            .says(message)
+            .label("this equation")
+            .other(studied.span, "at this solve"),
+        None => no(message),
+    };
+    let help = "`bmod kkt` derives the optimality conditions of a nonlinear program";
+    Err(refusal.help(help).into())
 }
 
 /// A record that is a discrete choice, and its symbol, where the solve leaves one.
@@ -270,11 +270,7 @@ fn conditions(
     write: bool,
 ) -> Result<Derived, Box<Diagnostic>> {
     let (symbols, store) = (&m.symbols, &m.store);
-    refuse_discrete(m, primal, |message| {
-        Diagnostic::execution("E0432", studied.span)
-            .says(message)
-            .label("of this solve")
-    })?;
+    refuse_discrete(m, primal, |message| of_solve("E0432", studied, message))?;
     let mut f = kkt::kkt(symbols, store, primal, false, true)
         .map_err(|r| refuse_kkt(m, primal, studied, r))?;
     let mut page = vec![Block::Heading(format!("Lagrangian of {}", primal.name))];
@@ -342,11 +338,8 @@ fn refuse_kkt(
     (equation, why): kkt::Refusal,
 ) -> Diagnostic {
     let Some(k) = equation else {
-        return Diagnostic::execution("E0432", studied.span)
-            .says(format!(
-                "the optimality conditions cannot be derived: {why}"
-            ))
-            .label("of this solve")
+        let message = format!("the optimality conditions cannot be derived: {why}");
+        return of_solve("E0432", studied, message)
             .help("they belong to a model with an objective, solved `using nlp`, `qcp` or `lp`");
     };
     let symbol = primal.equations[k].symbol;

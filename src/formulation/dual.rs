@@ -170,13 +170,7 @@ fn points(d: &mut Derivation) {
     let mut all: Vec<&Expr> = rows.iter().flat_map(|r| [&r.left, &r.right]).collect();
     all.extend(objective.as_ref().map(|o| &o.1));
     for e in all {
-        e.walk(&mut |e| {
-            if let Expr::Variable(Variable::Own(v), _) = e
-                && !found.contains(v)
-            {
-                found.push(*v);
-            }
-        });
+        e.own_variables(&mut found);
     }
     let first = d.out.multipliers.len();
     for &v in &found {
@@ -189,15 +183,13 @@ fn points(d: &mut Derivation) {
         });
     }
     let replaced = |e: &Expr| {
-        let node = |e| match e {
+        e.map_nodes(&|e| match e {
             Expr::Variable(Variable::Own(v), key) => {
                 let place = found.iter().position(|f| *f == v).unwrap_or_default();
-                Some(Expr::Variable(Variable::Multiplier(first + place), key))
+                Expr::Variable(Variable::Multiplier(first + place), key)
             }
-            e => Some(e),
-        };
-        e.map(&mut { node }, &mut |p| Some(p.clone()))
-            .unwrap_or_else(|| e.clone())
+            e => e,
+        })
     };
     for r in &mut rows {
         (r.left, r.right) = (replaced(&r.left), replaced(&r.right));
@@ -212,18 +204,19 @@ struct Class {
     places: Vec<usize>,
 }
 
-/// Bounds of a variable that have a multiplier.
-struct Bounds {
-    /// How the multiplier's name begins, and what its columns have.
-    which: &'static str,
-    text: &'static str,
-    origin: Origin,
-    /// The sign for a minimum.
-    sign: Sign,
-    /// The data of the bound; None where there is none.
-    data: Option<u32>,
-    /// The columns that have it.
-    places: Vec<usize>,
+/// Which bounds of a variable have a multiplier, and the columns that have them.
+type Bounds = (Origin, Vec<usize>);
+
+/// How the name of the multiplier of bounds begins, what its columns have, its sign for a minimum, and the data of the
+/// bound.
+fn about(bounds: Origin) -> (&'static str, &'static str, Sign, Option<u32>) {
+    let (lower, upper) = (Some(attribute::LO), Some(attribute::UP));
+    match bounds {
+        Origin::Lower(_) => ("lo", "a lower bound", Sign::Positive, lower),
+        Origin::Upper(_) => ("up", "an upper bound", Sign::Negative, upper),
+        Origin::Fixed(_) => ("fx", "a fixed value", Sign::Free, lower),
+        _ => ("no", "neither row nor bound", Sign::Free, None),
+    }
 }
 
 /// The rows of a variable's columns, and what their bounds add to the objective.
@@ -241,11 +234,7 @@ fn column(d: &mut Derivation, v: SymbolId) -> Result<Vec<(bool, Expr)>, String> 
     let (left, minimum) = (sum(left), d.is_minimum());
     let name = d.symbols.get(v).name.to_string();
     for (n, class) in classes.iter().enumerate() {
-        let word = match class.sign {
-            Sign::Positive => "positive",
-            Sign::Negative => "negative",
-            Sign::Free => "free",
-        };
+        let word = class.sign.word();
         let (suffix, guard) = match classes.len() {
             1 => (String::new(), None),
             _ => {
@@ -316,51 +305,13 @@ fn limits(d: &mut Derivation, v: SymbolId, columns: &Columns, classes: &[Class])
              its coefficient is 0, and holds nowhere, as the dual of an unbounded program must."
         ));
     }
-    let of = |which, text, origin, sign, data, places| Bounds {
-        which,
-        text,
-        origin,
-        sign,
-        data,
-        places,
-    };
-    let fixed = columns.places(|lo, up| lo == up);
-    let (lo, up) = (Some(attribute::LO), Some(attribute::UP));
     let mut all = vec![
-        of(
-            "lo",
-            "a lower bound",
-            Origin::Lower(v),
-            Sign::Positive,
-            lo,
-            lower,
-        ),
-        of(
-            "up",
-            "an upper bound",
-            Origin::Upper(v),
-            Sign::Negative,
-            up,
-            upper,
-        ),
-        of(
-            "fx",
-            "a fixed value",
-            Origin::Fixed(v),
-            Sign::Free,
-            lo,
-            fixed,
-        ),
-        of(
-            "no",
-            "neither row nor bound",
-            Origin::Missing(v),
-            Sign::Free,
-            None,
-            missing,
-        ),
+        (Origin::Lower(v), lower),
+        (Origin::Upper(v), upper),
+        (Origin::Fixed(v), columns.places(|lo, up| lo == up)),
+        (Origin::Missing(v), missing),
     ];
-    all.retain(|b| !b.places.is_empty());
+    all.retain(|b| !b.1.is_empty());
     all
 }
 
@@ -369,31 +320,32 @@ fn multiplier_of_bounds(
     d: &mut Derivation,
     v: SymbolId,
     row: &ColumnRow,
-    bounds: &Bounds,
+    (origin, places): &Bounds,
 ) -> (Expr, Option<Expr>) {
     let name = d.symbols.get(v).name.to_string();
-    let sign = match (bounds.sign, d.is_minimum()) {
-        (Sign::Positive, false) => Sign::Negative,
-        (Sign::Negative, false) => Sign::Positive,
-        (sign, _) => sign,
+    let (which, text, sign, data) = about(*origin);
+    let sign = if d.is_minimum() {
+        sign
+    } else {
+        sign.opposite()
     };
     let multiplier = Multiplier {
-        name: d.fresh(&format!("y_{}_{name}", bounds.which)),
+        name: d.fresh(&format!("y_{which}_{name}")),
         domain: domain_of(d.symbols, v),
         sign: d.flipped(sign),
-        origin: bounds.origin,
+        origin: *origin,
     };
     let number = d.out.multipliers.len();
     d.out.multipliers.push(multiplier);
     let y = d.multiplier(number, row.key());
     let guard = d.membership(
-        &format!("has_{}_{name}", bounds.which),
-        format!("columns of {name} with {}", bounds.text),
+        &format!("has_{which}_{name}"),
+        format!("columns of {name} with {text}"),
         v,
         row,
-        &bounds.places,
+        places,
     );
-    let Some(offset) = bounds.data else {
+    let Some(offset) = data else {
         // It keeps the row in the model.
         let term = Expr::Number(EPS) * y;
         return (guarded(term, guard.into_iter().collect()), None);

@@ -1,5 +1,6 @@
 //! From the checked tree, with its slots and tables, to formulas with named indices.
 
+use super::Row;
 use super::tree::*;
 use crate::check::node::{self, Domain, EquationDef, Key, Node, NodeKind, Slot, SymbolId, TableId};
 use crate::check::symbols::{SymbolKind, Symbols, UNIVERSE};
@@ -20,6 +21,24 @@ pub struct Equation {
     pub relation: Relation,
     /// Right side.
     pub right: Expr,
+}
+
+impl Equation {
+    /// Its rows in a formulation.
+    pub fn row(&self, symbols: &Symbols, domain: Vec<SymbolId>, pair: Option<Variable>) -> Row {
+        let symbol = symbols.get(self.symbol);
+        Row {
+            name: symbol.name.to_string(),
+            text: symbol.text.to_string(),
+            domain,
+            key: self.key.clone(),
+            binder: self.binder.clone(),
+            left: self.left.clone(),
+            relation: self.relation,
+            right: self.right.clone(),
+            pair,
+        }
+    }
 }
 
 /// Turns checked trees into formulas.

@@ -31,7 +31,9 @@ pub mod text;
 pub mod tree;
 
 use crate::check::node::SymbolId;
+use crate::check::symbols::Symbols;
 use crate::data::universe::Label;
+use crate::syntax::ast::VariableKind;
 use tree::{Binder, Expr, Indices, Part, Relation, Sense, Variable};
 
 /// The sign of a variable.
@@ -43,6 +45,35 @@ pub enum Sign {
     Positive,
     /// At most 0.
     Negative,
+}
+
+impl Sign {
+    /// The sign that a kind of variables has by its declaration, discrete ones relaxed.
+    pub fn of(kind: VariableKind) -> Self {
+        match kind {
+            VariableKind::Positive => Self::Positive,
+            VariableKind::Negative => Self::Negative,
+            _ => Self::Free,
+        }
+    }
+
+    /// That of the same number times -1.
+    pub fn opposite(self) -> Self {
+        match self {
+            Self::Positive => Self::Negative,
+            Self::Negative => Self::Positive,
+            Self::Free => Self::Free,
+        }
+    }
+
+    /// `free`, `positive` or `negative`.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Free => "free",
+            Self::Positive => "positive",
+            Self::Negative => "negative",
+        }
+    }
 }
 
 /// Where a multiplier comes from.
@@ -173,4 +204,14 @@ pub struct Formulation {
     pub by_instance: Vec<String>,
     /// What else is to be said.
     pub notes: Vec<String>,
+}
+
+impl Formulation {
+    /// The name of a variable.
+    pub fn variable(&self, symbols: &Symbols, v: Variable) -> String {
+        match v {
+            Variable::Own(s) => symbols.get(s).name.to_string(),
+            Variable::Multiplier(n) => self.multipliers[n].name.clone(),
+        }
+    }
 }

@@ -108,10 +108,7 @@ fn table(m: &Machine, g: &Generated) -> Option<[Block; 2]> {
     if p.row_count() > MAX_ROWS || p.column_count() > MAX_COLUMNS {
         return None;
     }
-    let name = |blocks: &Blocks, i: usize| {
-        let b = blocks.of(i as u32);
-        record(&m.store, &m.symbols.get(b.symbol).name, b.key(i as u32))
-    };
+    let name = |blocks: &Blocks, i: usize| m.origin_name(blocks, i);
     let columns = (0..p.column_count()).map(|j| name(&g.origin.columns, j));
     let head: Vec<String> = [String::new()]
         .into_iter()

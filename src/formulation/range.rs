@@ -1,10 +1,9 @@
 //! Ranges of a solve, as a page.
 
 use super::derive::Primal;
-use super::derived::{discrete, of_relaxation};
+use super::derived::{discrete, of_relaxation, of_solve};
 use super::page::{Block, Page};
 use super::side::short;
-use super::text::record;
 use crate::diag::Diagnostic;
 use crate::model::origin::Blocks;
 use crate::run::{Machine, Studied};
@@ -26,11 +25,7 @@ pub fn of(
     studied: &Studied,
     names: &[String],
 ) -> Result<Ranges, Box<Diagnostic>> {
-    let no = |message: &str| {
-        Diagnostic::execution("E0433", studied.span)
-            .says(message)
-            .label("of this solve")
-    };
+    let no = |message: &str| of_solve("E0433", studied, message);
     if primal.objective.is_none() || !primal.generated.instance.is_linear() {
         return Err(no("ranges belong to a linear program").into());
     }
@@ -48,9 +43,8 @@ pub fn of(
     };
     let g = &primal.generated;
     let is = |name: &String, blocks: &Blocks, i: usize| {
-        let b = blocks.of(i as u32);
-        let symbol = &m.symbols.get(b.symbol).name;
-        let whole = || record(&m.store, symbol, b.key(i as u32));
+        let symbol = &m.symbols.get(blocks.of(i as u32).symbol).name;
+        let whole = || named(m, blocks, i);
         let plain = |t: &str| t.to_lowercase().replace(['\'', '"', ' '], "");
         name.eq_ignore_ascii_case(symbol) || plain(name) == plain(&whole())
     };
@@ -83,8 +77,7 @@ pub fn of(
 
 /// The name of a row or column.
 pub fn named(m: &Machine, blocks: &Blocks, i: usize) -> String {
-    let b = blocks.of(i as u32);
-    record(&m.store, &m.symbols.get(b.symbol).name, b.key(i as u32))
+    m.origin_name(blocks, i)
 }
 
 /// Both tables.
@@ -97,15 +90,9 @@ pub fn page(m: &Machine, primal: &Primal, r: &Ranges) -> Page {
             "Right-hand sides: what one unit is worth, and from where to where".into(),
         ));
         let rows = r.rows.iter().map(|r| {
-            let numbers = [
-                r.value,
-                r.price[0],
-                r.price[1],
-                r.interval[0],
-                r.interval[1],
-            ];
+            let ([below, above], [from, to]) = (r.price, r.interval);
             let mut row = vec![named(m, &o.rows, r.row)];
-            row.extend(numbers.map(short));
+            row.extend([r.value, below, above, from, to].map(short));
             row
         });
         let head = words(&["row", "value", "price below", "price above", "from", "to"]);

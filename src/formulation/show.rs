@@ -31,12 +31,16 @@ pub struct Chosen {
 impl Chosen {
     /// The model of a solve.
     pub fn of(s: &Studied) -> Self {
+        Self::new(&s.code, s.span)
+    }
+
+    fn new(s: &SolveCode, span: Span) -> Self {
         Self {
-            model: s.code.model,
-            rows: s.code.equations.clone(),
-            objective: s.code.objective,
-            using: Some(s.code.using.to_string()),
-            solve: Some(s.span),
+            model: s.model,
+            rows: s.equations.clone(),
+            objective: s.objective,
+            using: Some(s.using.to_string()),
+            solve: Some(span),
         }
     }
 }
@@ -71,38 +75,28 @@ pub fn choose(m: &Machine, code: &[Code], name: Option<&str>) -> Result<Chosen, 
             });
         }
     }
-    match solves.last() {
-        Some((s, span)) => Ok(Chosen {
-            model: s.model,
-            rows: s.equations.clone(),
-            objective: s.objective,
-            using: Some(s.using.to_string()),
-            solve: Some(*span),
-        }),
-        None => {
-            let models: Vec<&str> = symbols
-                .iter()
-                .filter(|(_, s)| matches!(s.kind, SymbolKind::Model(_)))
-                .map(|(_, s)| &*s.name)
-                .collect();
-            match models.as_slice() {
-                [] => Err("the text has no model".into()),
-                [one] => choose(m, code, Some(one)),
-                many => Err(format!(
-                    "no model is solved; say which with `--model`: {}",
-                    many.join(", ")
-                )),
-            }
-        }
+    if let Some((s, span)) = solves.last() {
+        return Ok(Chosen::new(s, *span));
     }
+    match models(symbols).as_slice() {
+        [] => Err("the text has no model".into()),
+        [one] => choose(m, code, Some(one)),
+        many => Err(format!(
+            "no model is solved; say which with `--model`: {}",
+            many.join(", ")
+        )),
+    }
+}
+
+fn models(symbols: &Symbols) -> Vec<&str> {
+    let is_model = |kind: &SymbolKind| matches!(kind, SymbolKind::Model(_));
+    let models = symbols.iter().filter(|(_, s)| is_model(&s.kind));
+    models.map(|(_, s)| &*s.name).collect()
 }
 
 /// There is no model of this name; the nearest is shown.
 pub fn unknown(symbols: &Symbols, name: &str) -> String {
-    let models = symbols
-        .iter()
-        .filter(|(_, s)| matches!(s.kind, SymbolKind::Model(_)));
-    let names: Vec<&str> = models.map(|(_, s)| &*s.name).collect();
+    let names = models(symbols);
     match nearest(name, names.iter().copied()) {
         Some(n) => format!("there is no model `{name}`; did you mean `{n}`?"),
         None if names.is_empty() => format!("there is no model `{name}`: the text has none"),
@@ -170,33 +164,14 @@ pub fn formulation(m: &Machine, chosen: &Chosen) -> Formulation {
         .map(|r| lowering.equation(&m.equations[r.definition]))
         .collect();
     let mut own: Vec<SymbolId> = Vec::new();
-    let mut see = |e: &Expr| {
-        e.walk(&mut |e| {
-            if let Expr::Variable(Variable::Own(s), _) = e
-                && !own.contains(s)
-            {
-                own.push(*s);
-            }
-        });
-    };
     for e in &lowered {
-        see(&e.left);
-        see(&e.right);
+        e.left.own_variables(&mut own);
+        e.right.own_variables(&mut own);
     }
     own.sort_unstable();
     let rows = lowered.iter().zip(&chosen.rows).map(|(e, r)| {
-        let symbol = symbols.get(e.symbol);
-        Row {
-            name: symbol.name.to_string(),
-            text: symbol.text.to_string(),
-            domain: domain_of(symbols, e.symbol),
-            key: e.key.clone(),
-            binder: e.binder.clone(),
-            left: e.left.clone(),
-            relation: e.relation,
-            right: e.right.clone(),
-            pair: r.pair.map(Variable::Own),
-        }
+        let domain = domain_of(symbols, e.symbol);
+        e.row(symbols, domain, r.pair.map(Variable::Own))
     });
     let rows: Vec<Row> = rows.collect();
     let objective = chosen

@@ -2,7 +2,7 @@
 
 use super::bounds::{self, Assigned};
 use super::derive::{Derivation, Primal};
-use super::math::{Math, name, relation_sign, symbol_name};
+use super::math::{Math, name as name_of, relation_sign, symbol_name};
 use super::page::{Block, Formula, Page, Setter, formulas, over_domain, signed};
 use super::tree::*;
 use super::{Formulation, Multiplier, Origin, Row, Sign};
@@ -16,25 +16,9 @@ const MAX_LINES: usize = 40;
 /// The model itself as a formulation, its objective variable eliminated where a derivation does that.
 pub fn own(d: &Derivation) -> Formulation {
     let primal = d.primal;
-    let rows = primal
-        .equations
-        .iter()
-        .enumerate()
-        .filter(|(k, _)| !d.is_eliminated(*k));
-    let rows = rows.map(|(_, e)| {
-        let symbol = d.symbols.get(e.symbol);
-        Row {
-            name: symbol.name.to_string(),
-            text: symbol.text.to_string(),
-            domain: Vec::new(),
-            key: e.key.clone(),
-            binder: e.binder.clone(),
-            left: e.left.clone(),
-            relation: e.relation,
-            right: e.right.clone(),
-            pair: None,
-        }
-    });
+    let rows = primal.equations.iter().enumerate();
+    let rows = rows.filter(|(k, _)| !d.is_eliminated(*k));
+    let rows = rows.map(|(_, e)| e.row(d.symbols, Vec::new(), None));
     let objective = primal.objective.map(|(sense, z)| match &d.eliminated {
         Some(o) => (sense, o.function.clone()),
         None => (sense, Expr::Variable(Variable::Own(z), Vec::new())),
@@ -79,36 +63,24 @@ pub fn page(
     out.extend(dual.notes.iter().map(|n| Block::Words(n.clone())));
     out.push(Block::Heading("What is paired with what".into()));
     let mut pairs = Vec::new();
+    // `limit_i ≤ …`
+    let open = |name: &str, domain: &[SymbolId], relation: Relation| {
+        let left = over_domain(symbols, Math::Name(name_of(name)), domain);
+        let relation = Math::Operator(relation_sign(relation));
+        Math::Row(vec![left, relation, Math::Words("…".into())])
+    };
     for (n, m) in dual.multipliers.iter().enumerate() {
         let Origin::Row(e) = m.origin else { continue };
-        let relation = primal
-            .rows
-            .iter()
-            .find(|r| r.name == *symbols.get(e).name)
-            .map_or(Relation::Equal, |r| r.relation);
-        let left = over_domain(symbols, Math::Name(name(&symbols.get(e).name)), &m.domain);
-        let left = Math::Row(vec![
-            left,
-            Math::Operator(relation_sign(relation)),
-            Math::Words("…".into()),
-        ]);
+        let name = &*symbols.get(e).name;
+        let row = primal.rows.iter().find(|r| r.name == name);
+        let left = open(name, &m.domain, row.map_or(Relation::Equal, |r| r.relation));
         let right = over_domain(symbols, t.variable(Variable::Multiplier(n)), &m.domain);
         pairs.push((left, signed(right, m.sign)));
     }
     for v in &primal.own {
         let left = sign(symbols, dual, *v);
-        for r in dual
-            .rows
-            .iter()
-            .filter(|r| r.pair == Some(Variable::Own(*v)))
-        {
-            let right = over_domain(symbols, Math::Name(name(&r.name)), &r.domain);
-            let right = Math::Row(vec![
-                right,
-                Math::Operator(relation_sign(r.relation)),
-                Math::Words("…".into()),
-            ]);
-            pairs.push((left.clone(), right));
+        for r in rows_of(dual, *v) {
+            pairs.push((left.clone(), open(&r.name, &r.domain, r.relation)));
         }
         for (n, m) in dual.multipliers.iter().enumerate() {
             let (relation, upper) = match m.origin {
@@ -136,14 +108,15 @@ pub fn page(
     out
 }
 
+fn rows_of(dual: &Formulation, v: SymbolId) -> impl Iterator<Item = &Row> {
+    let of_v = move |r: &&Row| r.pair == Some(Variable::Own(v));
+    dual.rows.iter().filter(of_v)
+}
+
 /// A variable with the sign that its rows in the dual give it; free only without bounds.
 fn sign(symbols: &Symbols, dual: &Formulation, v: SymbolId) -> Math {
     let maximum = matches!(dual.objective, Some((Sense::Maximize, _)));
-    let rows: Vec<&Row> = dual
-        .rows
-        .iter()
-        .filter(|r| r.pair == Some(Variable::Own(v)))
-        .collect();
+    let rows: Vec<&Row> = rows_of(dual, v).collect();
     let sign = match rows.as_slice() {
         [one] => match (one.relation, maximum) {
             (Relation::Less, true) | (Relation::Greater, false) => Sign::Positive,
@@ -169,20 +142,16 @@ pub fn short(x: f64) -> String {
         return "0".into();
     }
     if !x.is_finite() {
-        return if x > 0.0 {
-            "∞".into()
-        } else {
-            "−∞".into()
-        };
+        return if x > 0.0 { "∞" } else { "−∞" }.into();
     }
     let digits = 6 - x.abs().log10().floor() as i32;
     let text = match (-3..=12).contains(&digits) {
         true => format!("{x:.*}", digits.max(0) as usize),
-        false => return format!("{x:.6e}").replace('-', "−"),
+        false => format!("{x:.6e}"),
     };
-    let text = match text.contains('.') {
-        true => text.trim_end_matches('0').trim_end_matches('.').to_string(),
-        false => text,
+    let text = match text.contains('.') && !text.contains('e') {
+        true => text.trim_end_matches('0').trim_end_matches('.'),
+        false => &text,
     };
     text.replace('-', "−")
 }
@@ -223,10 +192,8 @@ pub fn slackness(symbols: &Symbols, store: &Store, primal: &Primal, flipped: boo
     // A column's reduced cost is what its row in the dual leaves.
     let (gone, mut cost) = costs(p);
     if let Shape::ConvexQuadratic { objective: f, .. } = shape(p) {
-        cost.clone_from(&f.gradient);
-        f.hessian
-            .iter()
-            .for_each(|&(i, j, v)| cost[i] += v * a.level[j]);
+        let hessian = f.hessian.iter();
+        hessian.for_each(|&(i, j, v)| cost[i] += v * a.level[j]);
     }
     let maximum = p.sign() < 0.0;
     for b in &g.origin.columns.list {
@@ -240,36 +207,25 @@ pub fn slackness(symbols: &Symbols, store: &Store, primal: &Primal, flipped: boo
             let at_lower = near(x - lo, x);
             let sign = if at_lower != maximum { "≤" } else { "≥" };
             let bound = if at_lower { lo } else { up };
-            let (left, right) = (cost[k] - d, cost[k]);
             let name = named(b, j);
+            let [x_text, right] = [x, cost[k]].map(short);
+            let relation = match () {
+                () if lo == up => "=",
+                () if at_lower => "≥",
+                () => "≤",
+            };
             lines.push(match near(d, 0.0) {
-                true => format!(
-                    "{name}: {0} = {0}, tight; its level is {1}",
-                    short(right),
-                    short(x)
-                ),
+                true => format!("{name}: {right} = {right}, tight; its level is {x_text}"),
                 // A bound other than 0 has a multiplier, and the row in the dual is tight.
-                false if bound != 0.0 || lo == up => format!(
-                    "{name}: {} {} {}, tight: its multiplier is {}",
-                    short(x),
-                    if lo == up {
-                        "="
-                    } else if at_lower {
-                        "≥"
-                    } else {
-                        "≤"
-                    },
-                    short(bound),
-                    short(if flipped { -d } else { d })
-                ),
-                false => format!(
-                    "{name}: {} {sign} {}, slack {}, so it is at its {} bound, {}",
-                    short(left),
-                    short(right),
-                    short(d.abs()),
-                    if at_lower { "lower" } else { "upper" },
-                    short(x)
-                ),
+                false if bound != 0.0 || lo == up => {
+                    let (bound, y) = (short(bound), short(if flipped { -d } else { d }));
+                    format!("{name}: {x_text} {relation} {bound}, tight: its multiplier is {y}")
+                }
+                false => {
+                    let (left, slack) = (short(cost[k] - d), short(d.abs()));
+                    let side = if at_lower { "lower" } else { "upper" };
+                    format!("{name}: {left} {sign} {right}, slack {slack}, so it is at its {side} bound, {x_text}")
+                }
             });
         }
     }

@@ -30,16 +30,15 @@ pub fn chosen(m: &mut Machine) -> Result<(Primal, Studied), Box<Diagnostic>> {
         _ => "the model could not be generated".to_string(),
     };
     let end = m.options.at.get();
-    let label = if end == Span::default() {
-        ""
-    } else {
-        "the run ends here"
+    let label = match end == Span::default() {
+        true => "",
+        false => "the run ends here",
     };
-    let d = Diagnostic::execution("E0430", end)
+    Diagnostic::execution("E0430", end)
         .says(message)
         .label(label)
-        .help("a derivation needs a solve: it says what is minimised and which data hold");
-    Err(Box::new(d))
+        .help("a derivation needs a solve: it says what is minimised and which data hold")
+        .refuse()
 }
 
 /// The model of the solve that a run was asked to look at; None where there was none.
@@ -60,14 +59,12 @@ pub fn primal(m: &mut Machine) -> Option<(Primal, Studied)> {
         let limited = |e| match e {
             Expr::Variable(Variable::Own(s), key) if s == v => {
                 let inside = Expr::Member(set, key.clone());
-                Some(guarded(Expr::Variable(Variable::Own(s), key), vec![inside]))
+                guarded(Expr::Variable(Variable::Own(s), key), vec![inside])
             }
-            e => Some(e),
+            e => e,
         };
-        let change = |e: &Expr| e.map(&mut { limited }, &mut |p| Some(p.clone()));
         for e in &mut equations {
-            e.left = change(&e.left).unwrap_or(Expr::Number(0.0));
-            e.right = change(&e.right).unwrap_or(Expr::Number(0.0));
+            (e.left, e.right) = (e.left.map_nodes(&limited), e.right.map_nodes(&limited));
         }
     }
     let tuples = studied.code.equations.iter();
@@ -163,16 +160,13 @@ fn values(g: &Generated, origin: &Origin, a: &Answer) -> Values {
     if e.rows(&out.level, &mut activity).is_ok() {
         out.activity = activity;
     }
-    let (start, column) = e.jacobian_pattern();
-    let (start, column) = (start.to_vec(), column.to_vec());
-    let mut slope = vec![0.0; column.len()];
     let z = p.objective.map(|o| o.column as usize);
-    if z.is_some() && e.jacobian(&out.level, &mut slope).is_ok() {
+    if z.is_some()
+        && let Ok(slope) = e.jacobian_rows(&out.level)
+    {
         let mut reduced = vec![0.0; p.column_count()];
-        for (i, y) in out.row_marginal.iter().enumerate() {
-            for k in start[i]..start[i + 1] {
-                reduced[column[k] as usize] -= y * slope[k];
-            }
+        for (row, y) in slope.iter().zip(&out.row_marginal) {
+            row.iter().for_each(|(j, a)| reduced[*j] -= y * a);
         }
         held.iter()
             .for_each(|&j| out.column_marginal[j] = reduced[j]);

@@ -1,6 +1,6 @@
 //! A formulation as a model: statements of the language.
 
-use super::data::{Data, Statements, number, quoted};
+use super::data::{Data, Statements, head, number, quoted};
 use super::names::Names;
 use super::tree::*;
 use super::{Formulation, NewData, Row, Sign};
@@ -10,7 +10,6 @@ use crate::check::symbols::{Store, Symbols};
 use crate::data::input::Input;
 use crate::data::table::Table;
 use crate::report::names::join;
-use crate::syntax::ast::VariableKind;
 use rustc_hash::FxHashSet;
 use std::fmt::Write;
 use std::sync::Arc;
@@ -82,12 +81,8 @@ impl<'a> Writer<'a> {
     }
 
     fn variable(&self, v: Variable) -> String {
-        match v {
-            Variable::Own(s) => self.name(s).to_string(),
-            Variable::Multiplier(n) => self.f.multipliers[n].name.clone(),
-        }
+        self.f.variable(self.symbols, v)
     }
-
     fn part(&mut self, p: &Part) -> String {
         match p {
             Part::Index(k) => self.names.of(*k).to_string(),
@@ -267,13 +262,10 @@ impl<'a> Writer<'a> {
         let head = match tuple {
             Some(t) => self.expr(&d.conditions[t]),
             None => {
-                let names: Vec<String> = d
-                    .indices
-                    .iter()
-                    .map(|k| self.names.of(*k).to_string())
-                    .collect();
+                let indices = d.indices.iter();
+                let names: Vec<&str> = indices.map(|k| self.names.of(*k)).collect();
                 match names.as_slice() {
-                    [one] => one.clone(),
+                    [one] => one.to_string(),
                     _ => format!("({})", names.join(",")),
                 }
             }
@@ -422,20 +414,15 @@ pub fn model(
     }
     let _ = writeln!(out, "Model {} / {} /;\n", f.name, items.join(", "));
     out.push_str(&start);
-    let sense = objective.map(|o| o.0);
-    match sense {
-        _ if !solve => {}
-        Some(sense) => {
-            let word = match sense {
-                Sense::Minimize => "minimizing",
-                Sense::Maximize => "maximizing",
-            };
-            let (name, z) = (&f.name, &f.objective_name);
-            let _ = writeln!(out, "solve {name} using {} {word} {z};", f.using);
-        }
-        None => {
-            let _ = writeln!(out, "solve {} using {};", f.name, f.using);
-        }
+    if let Some((sense, _)) = objective.filter(|_| solve) {
+        let word = match sense {
+            Sense::Minimize => "minimizing",
+            Sense::Maximize => "maximizing",
+        };
+        let (name, z) = (&f.name, &f.objective_name);
+        let _ = writeln!(out, "solve {name} using {} {word} {z};", f.using);
+    } else if solve {
+        let _ = writeln!(out, "solve {} using {};", f.name, f.using);
     }
     out
 }
@@ -476,7 +463,7 @@ fn needed<'a>(symbols: &'a Symbols, store: &'a Store, f: &Formulation, w: &Write
 /// Declarations of the variables of a sign; `own`: the user's among them, with the kind that they were declared with,
 /// discrete ones relaxed.
 fn variables(symbols: &Symbols, f: &Formulation, sign: Sign, own: bool) -> Vec<String> {
-    let is = |v: &&SymbolId| own && sign_of(super::derive::kind(symbols, **v)) == sign;
+    let is = |v: &&SymbolId| own && Sign::of(super::derive::kind(symbols, **v)) == sign;
     let mine = f.own.iter().filter(is).map(|v| {
         let s = symbols.get(*v);
         let domain = super::derive::domain_of(symbols, *v);
@@ -487,28 +474,12 @@ fn variables(symbols: &Symbols, f: &Formulation, sign: Sign, own: bool) -> Vec<S
     mine.chain(new).collect()
 }
 
-fn sign_of(kind: VariableKind) -> Sign {
-    match kind {
-        VariableKind::Positive => Sign::Positive,
-        VariableKind::Negative => Sign::Negative,
-        _ => Sign::Free,
-    }
-}
-
 fn declaration(symbols: &Symbols, name: &str, domain: &[SymbolId], text: &str) -> String {
-    let sets: Vec<String> = domain
-        .iter()
-        .map(|s| symbols.get(*s).name.to_string())
-        .collect();
-    let sets = match sets.is_empty() {
-        true => String::new(),
-        false => format!("({})", sets.join(",")),
-    };
     let text = match text.is_empty() {
         true => String::new(),
         false => format!(" {}", quoted(text)),
     };
-    format!("   {name}{sets}{text}")
+    format!("   {}{text}", head(symbols, name, domain))
 }
 
 /// `x('a','b')`

@@ -435,14 +435,29 @@ impl Expr {
         node(e)
     }
 
+    /// The expression with another node for each; children first.
+    pub fn map_nodes(&self, node: &dyn Fn(Expr) -> Expr) -> Expr {
+        self.map(&mut |e| Some(node(e)), &mut |p| Some(p.clone()))
+            .unwrap_or_else(|| self.clone())
+    }
+
     /// The expression at the point where all variables are 0 (of a linear one, its constant).
     pub fn without_variables(&self) -> Expr {
-        let zero = |e| match e {
-            Expr::Variable(..) => Some(Expr::Number(0.0)),
-            e => Some(e),
-        };
-        self.map(&mut { zero }, &mut |p| Some(p.clone()))
-            .unwrap_or(Expr::Number(0.0))
+        self.map_nodes(&|e| match e {
+            Expr::Variable(..) => Expr::Number(0.0),
+            e => e,
+        })
+    }
+
+    /// Adds the user's variables that stand in it to a list that has them once.
+    pub fn own_variables(&self, out: &mut Vec<SymbolId>) {
+        self.walk(&mut |e| {
+            if let Expr::Variable(Variable::Own(v), _) = e
+                && !out.contains(v)
+            {
+                out.push(*v);
+            }
+        });
     }
 }
 
@@ -454,10 +469,8 @@ pub fn renamed(e: &Expr, indices: &mut Indices) -> Expr {
             bound.extend(d.indices.iter().copied());
         }
     });
-    let map: Vec<(IndexId, IndexId)> = bound
-        .into_iter()
-        .map(|k| (k, indices.add(indices.set[k])))
-        .collect();
+    let map = bound.into_iter().map(|k| (k, indices.add(indices.set[k])));
+    let map: Vec<(IndexId, IndexId)> = map.collect();
     rename(e, &map)
 }
 
@@ -466,10 +479,12 @@ pub fn rename(e: &Expr, map: &[(IndexId, IndexId)]) -> Expr {
     if map.is_empty() {
         return e.clone();
     }
-    let new = |k: IndexId| map.iter().find(|m| m.0 == k).map_or(k, |m| m.1);
+    fn new(k: IndexId, map: &[(IndexId, IndexId)]) -> IndexId {
+        map.iter().find(|m| m.0 == k).map_or(k, |m| m.1)
+    }
     fn part(p: &Part, map: &[(IndexId, IndexId)]) -> Part {
         match p {
-            Part::Index(k) => Part::Index(map.iter().find(|m| m.0 == *k).map_or(*k, |m| m.1)),
+            Part::Index(k) => Part::Index(new(*k, map)),
             Part::Lag(l) => Part::Lag(Box::new(Lag {
                 base: part(&l.base, map),
                 set: l.set,
@@ -481,7 +496,7 @@ pub fn rename(e: &Expr, map: &[(IndexId, IndexId)]) -> Expr {
     }
     let node = |e| match e {
         Expr::Aggregate(op, mut d, b) => {
-            d.indices.iter_mut().for_each(|k| *k = new(*k));
+            d.indices.iter_mut().for_each(|k| *k = new(*k, map));
             Some(Expr::Aggregate(op, d, b))
         }
         e => Some(e),

@@ -277,18 +277,27 @@ struct Report {
 }
 
 impl Report {
-    fn new(d: &Diagnostic, map: &SourceMap) -> Self {
-        let mut report = Self {
-            message: d.message.clone(),
-            code: Some(d.code),
-            severity: match d.severity {
-                Serious::Warning => Severity::Warning,
-                Serious::Error | Serious::Execution => Severity::Error,
-            },
-            help: d.help.clone(),
+    fn bare(message: &str, severity: Severity) -> Self {
+        Self {
+            message: message.into(),
+            code: None,
+            severity,
+            help: None,
             source: None,
             labels: Vec::new(),
             related: Vec::new(),
+        }
+    }
+
+    fn new(d: &Diagnostic, map: &SourceMap) -> Self {
+        let severity = match d.severity {
+            Serious::Warning => Severity::Warning,
+            Serious::Error | Serious::Execution => Severity::Error,
+        };
+        let mut report = Self {
+            code: Some(d.code),
+            help: d.help.clone(),
+            ..Self::bare(&d.message, severity)
         };
         let Some(place) = map.place(d.span) else {
             return report;
@@ -304,15 +313,8 @@ impl Report {
         }
         report.show(map.file(place.file), &here);
         for (file, lo, hi, text) in elsewhere {
-            let mut other = Self {
-                message: if text.is_empty() { "see also" } else { text }.into(),
-                code: None,
-                severity: Severity::Advice,
-                help: None,
-                source: None,
-                labels: Vec::new(),
-                related: Vec::new(),
-            };
+            let text = if text.is_empty() { "see also" } else { text };
+            let mut other = Self::bare(text, Severity::Advice);
             other.show(map.file(file), &[(lo, hi, "")]);
             report.related.push(other);
         }
@@ -322,19 +324,14 @@ impl Report {
     fn show(&mut self, file: &SourceFile, places: &[(u32, u32, &str)]) {
         let spans: Vec<(u32, u32)> = places.iter().map(|p| (p.0, p.1)).collect();
         let (excerpt, found) = Excerpt::new(file, &spans);
-        self.labels = found
-            .iter()
-            .zip(places)
-            .enumerate()
-            .map(|(k, (&(at, len), &(_, _, text)))| {
-                let text = (!text.is_empty()).then(|| text.to_string());
-                if k == 0 {
-                    LabeledSpan::new_primary_with_span(text, (at, len))
-                } else {
-                    LabeledSpan::new_with_span(text, (at, len))
-                }
-            })
-            .collect();
+        let of = |((k, &(at, len)), &(_, _, text)): ((usize, _), &(u32, u32, &str))| {
+            let text = (!text.is_empty()).then(|| text.to_string());
+            match k {
+                0 => LabeledSpan::new_primary_with_span(text, (at, len)),
+                _ => LabeledSpan::new_with_span(text, (at, len)),
+            }
+        };
+        self.labels = found.iter().enumerate().zip(places).map(of).collect();
         self.source = Some(excerpt);
     }
 }

@@ -12,6 +12,7 @@ use crate::data::table::Table;
 use crate::data::universe::{Label, Universe};
 use crate::data::value::special_text;
 use rustc_hash::FxHashMap;
+use std::borrow::Cow;
 use std::fmt::Write;
 
 /// Characters on a line.
@@ -34,20 +35,12 @@ impl Layout {
     /// The layout of what nothing was said about: a list for one index, else a table with two positions
     /// for its rows (one, of two), and one plane per label of the others.
     pub fn usual(dim: usize) -> Self {
-        match dim {
-            0 | 1 => Self {
-                rows: 0,
-                columns: usize::MAX,
-            },
-            2 => Self {
-                rows: 1,
-                columns: 1,
-            },
-            _ => Self {
-                rows: 2,
-                columns: 1,
-            },
-        }
+        let (rows, columns) = match dim {
+            0 | 1 => (0, usize::MAX),
+            2 => (1, 1),
+            _ => (2, 1),
+        };
+        Self { rows, columns }
     }
 }
 
@@ -433,19 +426,16 @@ impl Sheet<'_> {
                 pad(out, label_width);
             }
             for c in columns {
-                if joined {
+                let name = self.name(c[line]);
+                let shown: Cow<str> = if joined {
                     let names: Vec<&str> = c.iter().map(|&l| self.name(l)).collect();
-                    push_right(out, &names.join("."), column);
+                    names.join(".").into()
+                } else if width(name) > heading {
+                    name.chars().take(heading - 1).chain(['~']).collect()
                 } else {
-                    let name = self.name(c[line]);
-                    if width(name) > heading {
-                        let mut cut: String = name.chars().take(heading - 1).collect();
-                        cut.push('~');
-                        push_right(out, &cut, column);
-                    } else {
-                        push_right(out, name, column);
-                    }
-                }
+                    name.into()
+                };
+                push_right(out, &shown, column);
             }
             out.push('\n');
         }

@@ -317,11 +317,16 @@ const MAX_RECORDS_AFTER_LIMIT: usize = 100_000;
 impl Report {
     /// An empty report.
     pub fn new(file: &str) -> Self {
+        Self::default().of(file)
+    }
+
+    /// The report of this model.
+    pub fn of(self, file: &str) -> Self {
         Self {
             bmod: env!("CARGO_PKG_VERSION").into(),
             format: FORMAT,
             file: file.into(),
-            ..Self::default()
+            ..self
         }
     }
 

@@ -49,8 +49,7 @@ pub fn listing(
         selection,
     );
     for block in &rows {
-        let _ = writeln!(out, "---- {}  {}", block.symbol, range(block, "row"));
-        out.push('\n');
+        let _ = writeln!(out, "---- {}  {}\n", block.symbol, range(block, "row"));
         for &i in &block.shown {
             let terms = terms_of_row.get(i).map_or(&[][..], |t| t);
             row(&mut out, instance, names, activity, i, terms);
@@ -68,8 +67,7 @@ pub fn listing(
     }
     let entries = columns_of(instance, &columns);
     for block in &columns {
-        let _ = writeln!(out, "---- {}  {}", block.symbol, range(block, "column"));
-        out.push('\n');
+        let _ = writeln!(out, "---- {}  {}\n", block.symbol, range(block, "column"));
         for &j in &block.shown {
             column(&mut out, instance, names, j, &entries);
         }
@@ -304,19 +302,16 @@ fn algebra(terms: &KernelTerms, t: usize, names: &dyn Names) -> String {
                 }
                 (text, 1)
             }
-            Op::Add | Op::Subtract => {
+            Op::Add | Op::Subtract | Op::Multiply | Op::Divide | Op::Power => {
                 let (b, a) = (pop(), pop());
-                match op {
-                    Op::Add => (format!("{} + {}", wrap(a, 1), wrap(b, 2)), 1),
-                    _ => (format!("{} - {}", wrap(a, 1), wrap(b, 2)), 1),
-                }
-            }
-            Op::Multiply | Op::Divide => {
-                let (b, a) = (pop(), pop());
-                match op {
-                    Op::Multiply => (format!("{}*{}", wrap(a, 2), wrap(b, 3)), 2),
-                    _ => (format!("{}/{}", wrap(a, 2), wrap(b, 3)), 2),
-                }
+                let (sign, left, right, binds) = match op {
+                    Op::Add => (" + ", 1, 2, 1),
+                    Op::Subtract => (" - ", 1, 2, 1),
+                    Op::Multiply => ("*", 2, 3, 2),
+                    Op::Divide => ("/", 2, 3, 2),
+                    _ => ("**", 4, 4, 3),
+                };
+                (format!("{}{sign}{}", wrap(a, left), wrap(b, right)), binds)
             }
             Op::AddN(n) | Op::MultiplyN(n) => {
                 let mut parts: Vec<(String, u8)> = (0..n).map(|_| pop()).collect();
@@ -329,10 +324,6 @@ fn algebra(terms: &KernelTerms, t: usize, names: &dyn Names) -> String {
                 (parts.join(sign), binds)
             }
             Op::Negate => (format!("-{}", wrap(pop(), 2)), 1),
-            Op::Power => {
-                let (b, a) = (pop(), pop());
-                (format!("{}**{}", wrap(a, 4), wrap(b, 4)), 3)
-            }
             Op::PowerInt(2) => (format!("sqr({})", pop().0), 4),
             Op::PowerInt(k) => (format!("power({},{k})", pop().0), 4),
             Op::Call(f, n) => {

@@ -163,43 +163,34 @@ fn parts(x: f64, digits: i64) -> (String, i64) {
 }
 
 /// `1.235E+5`, `1.E+5`, `1E+5`, `1E5`: with as many digits as make the width.
+/// `1.235E+5`, `1.E+5`, `1E+5`, `1E5`: with as many digits as make the width.
 fn exponential(x: f64, width: usize) -> Option<String> {
-    let negative = i64::from(x < 0.0);
-    let mut digits = width as i64;
     // Rounding may lengthen or shorten the exponent: the first that fits, from above.
     let (_, e) = parts(x, 0);
-    let first = width as i64 - negative - 4 - e.abs().to_string().len() as i64;
-    digits = digits.min(first + 1);
-    while digits >= -2 {
+    let taken = i64::from(x < 0.0) + 4 + e.abs().to_string().len() as i64;
+    let most = (width as i64).min(width as i64 - taken + 1);
+    let texts = (-2..=most).rev().map(|digits| {
         let (mantissa, e) = parts(x, digits);
         let sign = match e {
             e if e < 0 => "-",
             _ if digits == -2 => "",
             _ => "+",
         };
-        let text = format!("{mantissa}E{sign}{}", e.abs());
-        if text.len() <= width {
-            return Some(text);
-        }
-        digits -= 1;
-    }
-    None
+        format!("{mantissa}E{sign}{}", e.abs())
+    });
+    texts.into_iter().find(|t| t.len() <= width)
 }
 
 /// ` 1.23E+05`: a place for the sign, two digits of exponent, no more decimals than asked for.
 fn scientific(x: f64, width: usize, decimals: usize) -> Option<String> {
-    let mut digits = decimals.min(SCIENTIFIC) as i64;
-    while digits >= -1 {
+    let most = decimals.min(SCIENTIFIC) as i64;
+    let texts = (-1..=most).rev().map(|digits| {
         let (mantissa, e) = parts(x, digits);
         let sign = if e < 0 { '-' } else { '+' };
         let blank = if mantissa.starts_with('-') { "" } else { " " };
-        let text = format!("{blank}{mantissa}E{sign}{:02}", e.abs());
-        if text.len() <= width {
-            return Some(text);
-        }
-        digits -= 1;
-    }
-    None
+        format!("{blank}{mantissa}E{sign}{:02}", e.abs())
+    });
+    texts.into_iter().find(|t| t.len() <= width)
 }
 
 /// All digits that fit, at most seventeen.

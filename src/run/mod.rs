@@ -366,14 +366,8 @@ impl<'h> Machine<'h> {
 
     /// `x('a','b')`.
     pub fn record_name(&self, s: SymbolId, key: &[Label]) -> String {
-        let name = &self.symbols.get(s).name;
-        if key.is_empty() {
-            return name.to_string();
-        }
-        let labels: Vec<String> = key
-            .iter()
-            .map(|&l| format!("'{}'", self.store.universe.name(l)))
-            .collect();
-        format!("{name}({})", labels.join(","))
+        let labels = key.iter().map(|&l| self.store.universe.name(l).to_string());
+        let labels: Vec<String> = labels.collect();
+        crate::report::names::join(&self.symbols.get(s).name, &labels)
     }
 }

@@ -2,11 +2,10 @@
 
 use super::generate::{GenerateOptions, Generated};
 use super::options::ListOptions;
-use super::{Flow, Frame, Machine, ModelState};
+use super::{Flow, Frame, Machine};
 use crate::check::node::*;
 use crate::check::symbols::attribute;
 use crate::data::table::Table;
-use crate::data::universe::Label;
 use crate::data::value::{EPS, NA, number};
 use crate::diag::Diagnostic;
 use crate::model::instance::{ColumnKind, Instance, Relation};
@@ -108,17 +107,14 @@ impl<'h> Machine<'h> {
         for (row, value) in outside.collect::<Vec<_>>() {
             let name = format!("{}.{}", self.symbols.get(model).name, row.name);
             let message = format!("`{name}` takes {}, not {value}", row.kind.words());
-            if !matches!(row.kind, Kind::WordsOrReal(..)) {
-                valid = false;
-                Diagnostic::execution("E0423", span)
-                    .says(message)
-                    .label("at this solve")
-                    .note(self);
-            } else if self.passed_over.insert(name) {
-                Diagnostic::warning("E0423", span)
-                    .says(message)
-                    .label("at this solve")
-                    .note(self);
+            let may_be_word = matches!(row.kind, Kind::WordsOrReal(..));
+            let d = match may_be_word {
+                true => Diagnostic::warning("E0423", span),
+                false => Diagnostic::execution("E0423", span),
+            };
+            valid &= may_be_word;
+            if !may_be_word || self.passed_over.insert(name) {
+                d.says(message).label("at this solve").note(self);
             }
         }
         valid
@@ -135,12 +131,8 @@ impl<'h> Machine<'h> {
     }
 
     pub(super) fn solve_once(&mut self, s: &SolveCode, span: Span, frame: &mut Frame) -> Flow {
-        if self.statements_failed() > 0 && !self.failed() {
-            return self.skip(s, span);
-        }
-        if self.failed() {
-            self.consequence(span, "so this is not solved, and the run ends here");
-            return Flow::Stop;
+        if self.failed() || self.statements_failed() > 0 {
+            return self.unsolved(s, span);
         }
         if !self.has_valid_attributes(s.model, span) {
             return Flow::Stop;
@@ -163,13 +155,10 @@ impl<'h> Machine<'h> {
         let generated = self.generate(s, options, &mut own);
         self.doing.replace(super::STATEMENTS.into());
         let Some(mut generated) = generated else {
-            if !self.stopped() && !self.failed() {
-                return self.skip(s, span);
-            }
-            if !self.stopped() {
-                self.consequence(span, "so this is not solved, and the run ends here");
-            }
-            return Flow::Stop;
+            return match self.stopped() {
+                true => Flow::Stop,
+                false => self.unsolved(s, span),
+            };
         };
         let generated_at = self.elapsed();
         if let Some(list) = self.options.list.clone() {
@@ -246,12 +235,16 @@ impl<'h> Machine<'h> {
         self.store_answer(s, &generated, &a, span);
         self.report_solve(s, &generated, &a);
         if self.options.keep_solutions {
-            self.keep_solution(s, generated, a);
+            self.kept.push(KeptSolve {
+                model: self.symbols.get(s.model).name.to_string(),
+                using: s.using,
+                generated,
+                answer: a,
+            });
         }
-        if self.host().interrupted() {
-            Flow::Stop
-        } else {
-            Flow::Next
+        match self.host().interrupted() {
+            true => Flow::Stop,
+            false => Flow::Next,
         }
     }
 
@@ -302,17 +295,20 @@ impl<'h> Machine<'h> {
         self.report().solves.push(report);
     }
 
-    /// Passes over a solve after errors that `maxExecError` lets pass.
-    fn skip(&mut self, s: &SolveCode, span: Span) -> Flow {
+    /// After an error the run ends here; errors that `maxExecError` lets pass skip the solve.
+    fn unsolved(&mut self, s: &SolveCode, span: Span) -> Flow {
+        if self.failed() {
+            self.consequence(span, "so this is not solved, and the run ends here");
+            return Flow::Stop;
+        }
         self.consequence(span, "so this solve is skipped");
+        let status = [
+            ("modelstat", ModelStatus::NoSolution as u8),
+            ("solvestat", SolverStatus::ProcessingSkipped as u8),
+        ];
         let state = self.models.entry(s.model).or_default();
-        state
-            .attributes
-            .insert("modelstat", f64::from(ModelStatus::NoSolution as u8));
-        state.attributes.insert(
-            "solvestat",
-            f64::from(SolverStatus::ProcessingSkipped as u8),
-        );
+        let status = status.map(|(name, code)| (name, f64::from(code)));
+        state.attributes.extend(status);
         Flow::Next
     }
 
@@ -373,35 +369,26 @@ impl<'h> Machine<'h> {
         let (p, all) = (&g.instance, |_| true);
         let in_time = || self.elapsed() < end && !self.host().interrupted();
         let r = range::ranges(p, &a.outcome.level, &a.activity, &all, &all, &in_time);
-        let mut found: Vec<(SymbolId, Derived, &[Label], f64)> = Vec::new();
+        use Derived::{PriceLo, PriceUp, RangeLo, RangeUp};
+        let mut set = |blocks: &Blocks, i: usize, values: &[(Derived, f64)]| {
+            let b = blocks.of(i as u32);
+            let key = b.key(i as u32);
+            for &(d, v) in values {
+                let empty = || Table::new(key.len(), NA);
+                let table = self.ranges.entry((b.symbol, d)).or_insert_with(empty);
+                table.set(key, v);
+            }
+        };
         for r in &r.rows {
-            let b = g.origin.rows.of(r.row as u32);
-            let key = b.key(r.row as u32);
-            let four = [r.interval[0], r.interval[1], r.price[0], r.price[1]];
-            let names = [
-                Derived::RangeLo,
-                Derived::RangeUp,
-                Derived::PriceLo,
-                Derived::PriceUp,
-            ];
-            found.extend(
-                names
-                    .into_iter()
-                    .zip(four)
-                    .map(|(d, v)| (b.symbol, d, key, v)),
-            );
+            let ([low, high], [below, above]) = (r.interval, r.price);
+            let prices = [(PriceLo, below), (PriceUp, above)];
+            set(&g.origin.rows, r.row, &[(RangeLo, low), (RangeUp, high)]);
+            set(&g.origin.rows, r.row, &prices);
         }
         for c in &r.costs {
-            let b = g.origin.columns.of(c.column as u32);
-            let key = b.key(c.column as u32);
-            let names = [Derived::RangeLo, Derived::RangeUp];
-            let two = names.into_iter().zip(c.interval);
-            found.extend(two.map(|(d, v)| (b.symbol, d, key, v)));
-        }
-        for (symbol, d, key, v) in found {
-            let empty = || Table::new(key.len(), NA);
-            let table = self.ranges.entry((symbol, d)).or_insert_with(empty);
-            table.set(key, v);
+            let [low, high] = c.interval;
+            let range = [(RangeLo, low), (RangeUp, high)];
+            set(&g.origin.columns, c.column, &range);
         }
         self.ranges.values_mut().for_each(Table::tidy);
     }
@@ -435,11 +422,8 @@ impl<'h> Machine<'h> {
         }
         for (side, missing) in missing {
             let Some(u) = missing else { continue };
-            let place = match (u.row, u.column) {
-                (Some(i), _) => format!(": {}", self.origin_name(&g.origin.rows, i)),
-                (_, Some(j)) => format!(": {}", self.origin_name(&g.origin.columns, j)),
-                _ => String::new(),
-            };
+            let place = self.row_or_column(g, u.row, u.column);
+            let place = place.map_or(String::new(), |name| format!(": {name}"));
             add_message(a, format!("no {side}bound is proved: {}{place}", u.why));
         }
         let bounds = [proof.low, proof.high];
@@ -453,10 +437,8 @@ impl<'h> Machine<'h> {
         let of_rows = [attribute::L, attribute::M, attribute::LO, attribute::UP];
         if self.model_option(s.model, "solveopt", MERGE) != MERGE {
             for item in &s.equations {
-                let t = self
-                    .symbols
-                    .get(self.equations[item.definition].symbol)
-                    .table;
+                let equation = self.equations[item.definition].symbol;
+                let t = self.symbols.get(equation).table;
                 for o in of_rows {
                     self.store.table_mut(t + o).clear();
                 }
@@ -551,9 +533,8 @@ impl<'h> Machine<'h> {
         let r = &a.residuals;
         let instance: &Instance = &g.instance;
         let objective = match instance.objective {
-            // No point was returned.
-            Some(_) if a.is_without_point() => NA,
-            Some(o) => a.outcome.level[o.column as usize],
+            // Perhaps no point was returned.
+            Some(_) => objective_level(g, a).unwrap_or(NA),
             None => r.pairs.unwrap_or(0.0),
         };
         // A program that leaves no discrete choice needs no search: its optimum is its bound.
@@ -564,17 +545,17 @@ impl<'h> Machine<'h> {
             None if discrete => (NA, 0.0),
             None => (NA, NA),
         };
-        let infeasible = !r.is_feasible(crate::solve::certificate::TOLERANCE);
-        let count = if infeasible {
-            r.infeasible_count as f64
-        } else {
-            0.0
-        };
-        let sum = if infeasible {
-            r.primal_sum.unwrap_or(0.0)
-        } else {
-            0.0
-        };
+        let violations = [
+            r.infeasible_count as f64,
+            r.primal_sum.unwrap_or(0.0),
+            r.primal.unwrap_or(0.0),
+        ];
+        let feasible = r.is_feasible(crate::solve::certificate::TOLERANCE);
+        let [count, sum, largest] = if feasible { [0.0; 3] } else { violations };
+        let kinds = instance.columns.kind.iter();
+        let discrete_columns = kinds
+            .filter(|k| !matches!(k, ColumnKind::Continuous | ColumnKind::OrderedSet))
+            .count();
         let values = [
             ("modelstat", f64::from(a.status as u8)),
             ("solvestat", f64::from(a.outcome.status as u8)),
@@ -593,44 +574,26 @@ impl<'h> Machine<'h> {
             ("numnlins", g.origin.nonlinear_nonzeros as f64),
             ("numinfes", count),
             ("suminfes", sum),
-            (
-                "maxinfes",
-                if infeasible {
-                    r.primal.unwrap_or(0.0)
-                } else {
-                    0.0
-                },
-            ),
+            ("maxinfes", largest),
             ("meaninfes", if count > 0.0 { sum / count } else { 0.0 }),
             ("numnopt", 0.0),
             ("numredef", 0.0),
             ("numvarproj", 0.0),
             ("trylinear", 0.0),
             ("numdepnd", 0.0),
-            (
-                "numdvar",
-                instance
-                    .columns
-                    .kind
-                    .iter()
-                    .filter(|k| !matches!(k, ColumnKind::Continuous | ColumnKind::OrderedSet))
-                    .count() as f64,
-            ),
+            ("numdvar", discrete_columns as f64),
             ("domusd", 0.0),
             ("marginals", 1.0),
             ("number", f64::from(self.report().solves.len() as u32 + 1)),
             ("line", self.map.listing_line(self.options.at.get()) as f64),
             ("linkused", 0.0),
         ];
-        let state: &mut ModelState = self.models.entry(s.model).or_default();
-        for (k, v) in values {
-            state.attributes.insert(k, v);
-        }
+        let state = self.models.entry(s.model).or_default();
+        state.attributes.extend(values);
     }
 
     pub(super) fn report_solve(&mut self, s: &SolveCode, g: &Generated, a: &Answer) {
         let r = &a.residuals;
-        let objective = g.instance.objective;
         let solve = json::SolveReport {
             sense: s.objective.map(|(sense, _)| sense),
             objective_name: s
@@ -639,9 +602,7 @@ impl<'h> Machine<'h> {
             solver: a.outcome.solver.to_string(),
             model_status: a.status.into(),
             solver_status: a.outcome.status.into(),
-            objective: objective
-                .filter(|_| !a.is_without_point())
-                .map(|o| json::Number(a.outcome.level[o.column as usize])),
+            objective: objective_level(g, a).map(json::Number),
             search: a
                 .search
                 .as_ref()
@@ -691,8 +652,7 @@ impl<'h> Machine<'h> {
     /// Notes in the report that a solve begins, and what was wrong so far: should the run be ended from outside, this
     /// is what is known.
     fn begins(&self, s: &SolveCode, generated: Option<&Generated>) {
-        let empty = Generated::default();
-        let solve = self.not_solved(s, generated.unwrap_or(&empty));
+        let solve = self.not_solved(s, generated.unwrap_or(&Generated::default()));
         let diagnostics =
             crate::report::diagnostic::Diagnostic::all(&self.diagnostics.borrow(), &self.map);
         let mut report = self.report();
@@ -714,11 +674,7 @@ impl<'h> Machine<'h> {
 
     /// Bound, gap and nodes of a search, with names.
     fn search_report(&self, g: &Generated, a: &Answer, found: &mip::Report) -> json::Search {
-        let value = g
-            .instance
-            .objective
-            .map(|o| a.outcome.level[o.column as usize]);
-        let value = value.filter(|_| !a.is_without_point());
+        let value = objective_level(g, a);
         let gap = |(v, b): (f64, f64)| json::Number((v - b).abs() / v.abs().max(1e-10));
         let node = |r: &mip::Record| json::TreeNode {
             parent: r.parent,
@@ -795,11 +751,7 @@ impl<'h> Machine<'h> {
                 | ModelStatus::LocallyInfeasible
                 | ModelStatus::IntermediateInfeasible
         ) {
-            let worst = match (r.worst_row, r.worst_column) {
-                (Some(i), _) => Some(self.origin_name(&g.origin.rows, i)),
-                (_, Some(j)) => Some(self.origin_name(&g.origin.columns, j)),
-                _ => None,
-            };
+            let worst = self.row_or_column(g, r.worst_row, r.worst_column);
             if let Some(w) = worst {
                 parts.push(format!("the largest residual is at {w}"));
             }
@@ -830,16 +782,16 @@ impl<'h> Machine<'h> {
         ));
     }
 
-    fn keep_solution(&mut self, s: &SolveCode, generated: Generated, answer: Answer) {
-        let model = self.symbols.get(s.model).name.to_string();
-        self.kept.push(KeptSolve {
-            model,
-            using: s.using,
-            generated,
-            answer,
-        });
+    /// The name of a row, or else of a column.
+    fn row_or_column(
+        &self,
+        g: &Generated,
+        row: Option<usize>,
+        column: Option<usize>,
+    ) -> Option<String> {
+        let row = row.map(|i| self.origin_name(&g.origin.rows, i));
+        row.or_else(|| Some(self.origin_name(&g.origin.columns, column?)))
     }
-
     /// The solves that were kept.
     pub fn kept(&self) -> &[KeptSolve] {
         &self.kept
@@ -880,6 +832,12 @@ fn larger_models(task: &Task) -> Option<String> {
     (for_highs && !cfg!(feature = "highs")).then(|| format!("{own}: {highs}"))
 }
 
+/// Level of the objective variable, if a point was returned.
+fn objective_level(g: &Generated, a: &Answer) -> Option<f64> {
+    let o = g.instance.objective.filter(|_| !a.is_without_point())?;
+    Some(a.outcome.level[o.column as usize])
+}
+
 /// Says something more of an answer.
 fn add_message(a: &mut Answer, more: String) {
     let message = a.outcome.message.take();
@@ -888,14 +846,9 @@ fn add_message(a: &mut Answer, more: String) {
 
 /// Names of the equations and variables of a model, for a message.
 fn symbols(g: &Generated, names: &RunNames) -> String {
-    let of = |blocks: &Blocks| -> Vec<String> {
-        let symbols = blocks.list.iter().map(|b| b.symbol);
-        symbols
-            .map(|s| names.machine.symbols.get(s).name.to_string())
-            .collect()
-    };
-    let mut all = of(&g.origin.rows);
-    all.extend(of(&g.origin.columns));
+    let blocks = g.origin.rows.list.iter().chain(&g.origin.columns.list);
+    let name = |b: &crate::model::origin::Block| &*names.machine.symbols.get(b.symbol).name;
+    let mut all: Vec<&str> = blocks.map(name).collect();
     all.dedup();
     all.join(", ")
 }

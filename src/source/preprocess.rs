@@ -222,7 +222,7 @@ pub(crate) struct Preprocessor<'h> {
     pub(super) host: &'h mut dyn Host,
     pub(crate) map: SourceMap,
     pub(super) frames: Vec<Frame>,
-    pub(super) names: Variables,
+    pub(crate) names: Variables,
     /// What `$setEnv` said, in lower case; the machine's environment is nobody's business.
     pub(super) environment: FxHashMap<String, String>,
     pub(super) macros: Macros,
@@ -230,18 +230,18 @@ pub(crate) struct Preprocessor<'h> {
     /// Switches and where in the expanded text they came into force; never empty.
     pub(super) modes: Vec<(u32, Modes)>,
     /// `$onEnd`: `endif`, `endloop` … close blocks.
-    pub(super) on_end: bool,
+    pub(crate) on_end: bool,
     /// Inside an inline comment that runs over lines.
     in_comment: Option<Span>,
     /// Comments open inside it.
     comment_depth: usize,
-    pub(super) warnings: Vec<Diagnostic>,
-    pub(super) ending: Ending,
+    pub(crate) warnings: Vec<Diagnostic>,
+    pub(crate) ending: Ending,
     pub(super) max_jumps: usize,
     /// What `$maxGoto` may allow.
     pub(super) most_jumps: usize,
     /// How many of the errors so far `$clearError` made warnings.
-    pub(super) cleared_errors: usize,
+    pub(crate) cleared_errors: usize,
     /// `$if`s followed in the present line.
     pub(super) conditions_on_line: usize,
 }
@@ -454,6 +454,7 @@ impl<'h> Preprocessor<'h> {
                     .help("split the model, or read the data with `execute_load`"),
             ]);
         }
+        let alone = |d: Box<Diagnostic>| vec![*d];
         loop {
             let grown = self.map.expanded().len() - before;
             let Some(frame) = self.frames.last() else {
@@ -463,9 +464,7 @@ impl<'h> Preprocessor<'h> {
                 return Ok(true);
             }
             if frame.pos >= frame.len {
-                if let Err(d) = self.leave() {
-                    return Err(vec![*d]);
-                }
+                self.leave().map_err(alone)?;
                 continue;
             }
             let (file, pos) = (frame.file, frame.pos);
@@ -481,12 +480,9 @@ impl<'h> Preprocessor<'h> {
                         return Ok(true);
                     }
                     let line = self.take_line();
-                    let outcome = self
-                        .directive_text(line)
-                        .and_then(|l| self.directive_line(l, known));
-                    if let Err(d) = outcome {
-                        return Err(vec![*d]);
-                    }
+                    self.directive_text(line)
+                        .and_then(|l| self.directive_line(l, known))
+                        .map_err(alone)?;
                     continue;
                 }
                 let end = self.plain_end(pos);
@@ -501,30 +497,25 @@ impl<'h> Preprocessor<'h> {
                 }
             }
             let line = self.take_line();
-            let outcome = match self.substituted(line) {
-                Err(d) => Err(d),
-                Ok(l) => {
-                    let first = l.text.as_bytes().first().copied();
-                    if self.in_comment.is_some() {
-                        self.finish_text(l, 0)
-                    } else if first == Some(self.marks.comment) {
-                        Ok(())
-                    } else if self.marks.directive(&l.text).is_some() {
-                        if grown > 0 {
-                            // Statements before it come first.
-                            self.advance(pos);
-                            return Ok(true);
-                        }
-                        let l = self.without_comments(l);
-                        self.directive_line(l, known)
-                    } else {
-                        self.finish_text(l, 0)
-                    }
-                }
-            };
-            if let Err(d) = outcome {
-                return Err(vec![*d]);
+            let l = self.substituted(line).map_err(alone)?;
+            let first = l.text.as_bytes().first();
+            if self.in_comment.is_none() && first == Some(&self.marks.comment) {
+                continue;
             }
+            let directive = self.in_comment.is_none() && self.marks.directive(&l.text).is_some();
+            if directive && grown > 0 {
+                // Statements before it come first.
+                self.advance(pos);
+                return Ok(true);
+            }
+            let outcome = match directive {
+                true => {
+                    let l = self.without_comments(l);
+                    self.directive_line(l, known)
+                }
+                false => self.finish_text(l, 0),
+            };
+            outcome.map_err(alone)?;
         }
     }
 
@@ -534,37 +525,6 @@ impl<'h> Preprocessor<'h> {
         let end = self.modes.partition_point(|(from, _)| *from < part.hi);
         let first = first.max(1) - 1;
         Switches::new(&self.modes[first..end.max(first + 1)])
-    }
-
-    /// `$onEnd` is in force.
-    pub(crate) fn on_end(&self) -> bool {
-        self.on_end
-    }
-
-    /// How many of the errors so far `$clearError` made warnings.
-    pub(crate) fn cleared_errors(&self) -> usize {
-        self.cleared_errors
-    }
-
-    /// Names that `-D` defined and the text never asked for.
-    pub(crate) fn unused_defines(&self) -> Vec<String> {
-        self.names.unused()
-    }
-
-    pub(crate) fn into_map(self) -> SourceMap {
-        self.map
-    }
-
-    pub(crate) fn warn(&mut self, d: Diagnostic) {
-        self.warnings.push(d);
-    }
-
-    pub(crate) fn take_warnings(&mut self) -> Vec<Diagnostic> {
-        std::mem::take(&mut self.warnings)
-    }
-
-    pub(crate) fn ending(&self) -> Ending {
-        self.ending
     }
 
     /// Goes on reading the present file at `pos`.
@@ -796,9 +756,8 @@ impl<'h> Preprocessor<'h> {
 
     fn system(&mut self, item: &str, lo: u32) -> Option<String> {
         let main = self.frames.first()?.path.clone();
-        let text = |p: Option<&std::ffi::OsStr>| {
-            p.map_or(String::new(), |s| s.to_string_lossy().into_owned())
-        };
+        let text =
+            |p: Option<&std::ffi::OsStr>| p.unwrap_or_default().to_string_lossy().into_owned();
         let dotted = |p: Option<&std::ffi::OsStr>| {
             p.map_or(String::new(), |s| format!(".{}", s.to_string_lossy()))
         };
@@ -956,10 +915,7 @@ impl<'h> Preprocessor<'h> {
         blanks.extend(open.map(|start| (start, bytes.len())));
         if let (Some(_), Some(at)) = (open, opened_at) {
             let (lo, hi) = line.origin(at, at + m.inline.0.len());
-            let file = self.frames.last().map_or(FileId(0), |f| f.file);
-            let span = self.map.push_substitute(" ", file, lo, hi);
-            self.map.push_substitute("\n", file, hi, hi);
-            self.in_comment = Some(span);
+            self.in_comment = Some(self.place(lo, hi));
         }
         let changes: Vec<_> = blanks
             .into_iter()
@@ -978,10 +934,8 @@ impl<'h> Preprocessor<'h> {
 /// without its partner on the line begin nothing.
 pub(crate) fn quoted_end(bytes: &[u8], i: usize) -> Option<usize> {
     let q = bytes[i];
-    if q != b'\'' && q != b'"' {
-        return None;
-    }
-    if i > 0 && bytes[i - 1].is_ascii_alphanumeric() {
+    let in_word = i > 0 && bytes[i - 1].is_ascii_alphanumeric();
+    if !matches!(q, b'\'' | b'"') || in_word {
         return None;
     }
     let rest = &bytes[i + 1..];

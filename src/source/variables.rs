@@ -11,7 +11,7 @@ type Scope = FxHashMap<String, String>;
 
 /// All names, one pair of scopes per open file.
 #[derive(Default)]
-pub(super) struct Variables {
+pub(crate) struct Variables {
     global: Scope,
     /// `(scoped, local)` per open file, the innermost last.
     files: Vec<(Scope, Scope)>,
@@ -58,7 +58,7 @@ impl Variables {
     }
 
     /// Names from outside that nothing has asked for, in alphabetical order.
-    pub(super) fn unused(&self) -> Vec<String> {
+    pub(crate) fn unused(&self) -> Vec<String> {
         let mut names: Vec<String> = self.unused.borrow().iter().cloned().collect();
         names.sort();
         names

@@ -106,7 +106,7 @@ impl<'h> Parser<'h> {
         loop {
             let cut = self
                 .splitter
-                .next(self.text.map.expanded(), self.text.on_end(), self.ended);
+                .next(self.text.map.expanded(), self.text.on_end, self.ended);
             match cut {
                 Cut::Statement(raw) => return self.take(raw).map(Some),
                 Cut::More if self.ended => return Ok(None),
@@ -208,7 +208,7 @@ impl<'h> Parser<'h> {
                 );
                 let help =
                     "the elements stand between slashes: `set i / a, b, c /;`, `set t / 1*10 /;`";
-                self.text.warn(
+                self.text.warnings.push(
                     Diagnostic::warning("E0234", name.span)
                         .says(message)
                         .help(help),
@@ -261,7 +261,7 @@ impl<'h> Parser<'h> {
             };
             let message =
                 format!("`{text}` behind `{name}` is read as an explanatory text, not as a {what}");
-            self.text.warn(
+            self.text.warnings.push(
                 Diagnostic::warning("E0234", d.name.span)
                     .says(message)
                     .help(help),
@@ -344,27 +344,27 @@ impl<'h> Parser<'h> {
 
     /// Names that `-D` defined and the text never asked for.
     pub fn unused_defines(&self) -> Vec<String> {
-        self.text.unused_defines()
+        self.text.names.unused()
     }
 
     /// The files and the expanded text, when parsing is done.
     pub fn into_map(self) -> SourceMap {
-        self.text.into_map()
+        self.text.map
     }
 
     /// How many of the errors so far `$clearError` made warnings.
     pub fn cleared_errors(&self) -> usize {
-        self.text.cleared_errors()
+        self.text.cleared_errors
     }
 
     /// Warnings since the last call.
     pub fn warnings(&mut self) -> Vec<Diagnostic> {
-        self.text.take_warnings()
+        std::mem::take(&mut self.text.warnings)
     }
 
     /// How the text ended: whether it is to be run.
     pub fn ending(&self) -> Ending {
-        self.text.ending()
+        self.text.ending
     }
 
     /// A statement's text, as expanded.

@@ -206,11 +206,9 @@ impl<'a> Places<'a> {
         self.of_derived.rows(&at, &mut have).map_err(|_| ())?;
         let mut activity = vec![0.0; self.primal.row_count()];
         self.of_primal.rows(x, &mut activity).map_err(|_| ())?;
-        let (start, column) = self.of_primal.jacobian_pattern();
-        let (start, column) = (start.to_vec(), column.to_vec());
-        let mut values = vec![0.0; column.len()];
-        self.of_primal.jacobian(x, &mut values).map_err(|_| ())?;
-        if have.iter().chain(&values).any(|v| !v.is_finite()) {
+        let slope = self.of_primal.jacobian_rows(x).map_err(|_| ())?;
+        let values = slope.iter().flatten().map(|(_, v)| v);
+        if have.iter().chain(values).any(|v| !v.is_finite()) {
             return Err(());
         }
         let n = self.primal.column_count();
@@ -222,19 +220,14 @@ impl<'a> Places<'a> {
         match self.objective {
             Aim::Column(z) => add(z, 1.0),
             Aim::Row(i, z) => {
-                let r = start[i]..start[i + 1];
-                let a = r
-                    .clone()
-                    .find(|&k| column[k] as usize == z)
-                    .map_or(1.0, |k| values[k]);
-                r.for_each(|k| add(column[k] as usize, -values[k] / a));
+                let a = slope[i].iter().find(|(j, _)| *j == z);
+                let a = a.map_or(1.0, |(_, v)| *v);
+                slope[i].iter().for_each(|(j, v)| add(*j, -v / a));
             }
         }
-        for (i, place) in self.rows.iter().enumerate() {
-            if place.is_some() {
-                for k in start[i]..start[i + 1] {
-                    add(column[k] as usize, -y[i] * values[k]);
-                }
+        for (i, row) in slope.iter().enumerate() {
+            if self.rows[i].is_some() {
+                row.iter().for_each(|(j, v)| add(*j, -y[i] * v));
             }
         }
         for (j, place) in self.columns.iter().enumerate() {

@@ -57,17 +57,14 @@ fn tangents(p: &instance::Instance, x: &[f64], without: &[bool]) -> Option<insta
     let mut e = Evaluator::new(p);
     let mut activity = vec![0.0; p.row_count()];
     e.rows(x, &mut activity).ok()?;
-    let (start, column) = e.jacobian_pattern();
-    let (start, column) = (start.to_vec(), column.to_vec());
-    let mut values = vec![0.0; column.len()];
-    e.jacobian(x, &mut values).ok()?;
+    let jacobian = e.jacobian_rows(x).ok()?;
     let mut out = instance::Instance {
         columns: p.columns.clone(),
         objective: p.objective,
         ..instance::Instance::default()
     };
-    for i in 0..p.row_count() {
-        let entries = (start[i]..start[i + 1]).map(|k| (column[k] as usize, values[k]));
+    for (i, entries) in jacobian.into_iter().enumerate() {
+        let entries = entries.into_iter();
         let entries = entries.filter(|(j, _)| !without.get(*j).is_some_and(|w| *w));
         let entries: Vec<(usize, f64)> = entries.collect();
         let slope: f64 = entries.iter().map(|(j, v)| v * x[*j]).sum();
@@ -108,21 +105,13 @@ impl<'a> Names<'a> {
     }
 
     fn row(&self, i: usize) -> String {
-        called(
-            self.symbols,
-            self.store,
-            &self.primal.generated.origin.rows,
-            i,
-        )
+        let rows = &self.primal.generated.origin.rows;
+        called(self.symbols, self.store, rows, i)
     }
 
     fn column(&self, j: usize) -> String {
-        called(
-            self.symbols,
-            self.store,
-            &self.primal.generated.origin.columns,
-            j,
-        )
+        let columns = &self.primal.generated.origin.columns;
+        called(self.symbols, self.store, columns, j)
     }
 
     /// The column in the dual that belongs to a row.
@@ -166,10 +155,8 @@ fn compare(
     let f0 = by_row.unwrap_or_else(|| {
         let mut gradient = vec![0.0; p.column_count()];
         z.into_iter().for_each(|z| gradient[z] = 1.0);
-        Objective {
-            gradient,
-            constant: 0.0,
-        }
+        let constant = 0.0;
+        Objective { gradient, constant }
     });
     c.number(f0.constant, d0.constant, &|| {
         "the constant of the objective".into()
@@ -311,14 +298,10 @@ impl Transposed<'_> {
     fn column(&mut self, j: usize, row: Option<usize>, mut want: Vec<(usize, f64)>) {
         let names = self.names;
         let name = || names.column(j);
-        let [lower, upper, fixed] = [Origin::Lower, Origin::Upper, Origin::Fixed]
-            .map(|o: fn(SymbolId) -> Origin| names.of_column(o, j));
-        want.extend(
-            [lower, upper, fixed]
-                .into_iter()
-                .flatten()
-                .map(|y| (y, 1.0)),
-        );
+        let origins: [fn(SymbolId) -> Origin; 3] = [Origin::Lower, Origin::Upper, Origin::Fixed];
+        let [lower, upper, fixed] = origins.map(|o| names.of_column(o, j));
+        let bounds = [lower, upper, fixed].into_iter().flatten();
+        want.extend(bounds.map(|y| (y, 1.0)));
         let c = &mut *self.c;
         let Some(i) = row else {
             // Without a multiplier it is a row of numbers, which holds, or the dual could not be generated.

@@ -2,7 +2,7 @@
 
 use pest::iterators::Pair;
 
-use super::{Builder, Outcome, need, parts};
+use super::{Builder, Outcome, bare, need, parts};
 use crate::diag::Diagnostic;
 use crate::syntax::ast::*;
 use crate::syntax::grammar::Rule;
@@ -13,14 +13,12 @@ impl Builder<'_> {
     pub(crate) fn statement(&self, pair: Pair<'_, Rule>) -> Outcome<StmtKind> {
         match pair.as_rule() {
             Rule::set_statement => {
-                let mut singleton = false;
-                let mut list = Vec::new();
+                let (mut singleton, mut list) = (false, Vec::new());
                 for p in parts(pair) {
                     match p.as_rule() {
                         Rule::set_word => {
-                            singleton = p.as_str().len() > 4
-                                && p.as_str()[..9.min(p.as_str().len())]
-                                    .eq_ignore_ascii_case("singleton")
+                            let first = p.as_str().get(..9);
+                            singleton = first.is_some_and(|w| w.eq_ignore_ascii_case("singleton"));
                         }
                         _ => list.push(SetDecl {
                             symbol: self.declaration(p)?,
@@ -64,16 +62,8 @@ impl Builder<'_> {
                 for p in parts(pair) {
                     let d = self.declaration(p)?;
                     let path = d.data.map(|s| {
-                        let t = self
-                            .expanded
-                            .get(s.lo as usize..s.hi as usize)
-                            .unwrap_or("")
-                            .trim();
-                        let t = ['\'', '"']
-                            .iter()
-                            .find_map(|q| t.strip_prefix(*q)?.strip_suffix(*q))
-                            .unwrap_or(t);
-                        t.trim().into()
+                        let t = self.expanded.get(s.lo as usize..s.hi as usize);
+                        bare(t.unwrap_or("").trim()).trim().into()
                     });
                     list.push(FileDecl {
                         name: d.name,
@@ -98,18 +88,13 @@ impl Builder<'_> {
                 Ok(StmtKind::Table(TableDecl { of, symbols }))
             }
             Rule::alias_statement => {
-                let mut groups = Vec::new();
-                for group in parts(pair) {
-                    groups.push(group.into_inner().map(|n| self.ident(&n)).collect());
-                }
-                Ok(StmtKind::Alias(groups))
+                let names =
+                    |group: Pair<'_, Rule>| group.into_inner().map(|n| self.ident(&n)).collect();
+                Ok(StmtKind::Alias(parts(pair).map(names).collect()))
             }
             Rule::model_statement => {
-                let mut list = Vec::new();
-                for p in parts(pair) {
-                    list.push(self.model(p)?);
-                }
-                Ok(StmtKind::Model(list))
+                let list = parts(pair).map(|p| self.model(p));
+                Ok(StmtKind::Model(list.collect::<Outcome<_>>()?))
             }
             _ => self.action(pair),
         }
@@ -132,12 +117,7 @@ impl Builder<'_> {
         for p in inner {
             match p.as_rule() {
                 Rule::declared_over => d.domain = Some(self.domain_names(p)),
-                Rule::text_mark => {
-                    let inside = self.hole(&p).map(|h| h.inside);
-                    d.text = inside
-                        .and_then(|s| self.expanded.get(s.lo as usize..s.hi as usize))
-                        .map(Into::into);
-                }
+                Rule::text_mark => d.text = self.text_in(&p),
                 _ => d.data = self.hole(&p).map(|h| h.inside),
             }
         }
@@ -156,32 +136,22 @@ impl Builder<'_> {
     fn domain_names(&self, pair: Pair<'_, Rule>) -> Vec<DomainName> {
         parts(pair)
             .map(|p| {
-                let place = self.span(&p);
-                let text = p.as_str();
-                let mut name = None;
+                // `*` leaves no pair.
+                let mut name = Ident {
+                    name: "*".into(),
+                    span: self.span(&p),
+                };
                 let mut defines = false;
                 for q in p.into_inner() {
                     match q.as_rule() {
                         Rule::defines => defines = true,
                         Rule::quoted => {
-                            name = Some(Ident {
-                                name: Self::unquote(&q),
-                                span: self.span(&q),
-                            })
+                            (name.name, name.span) = (Self::unquote(&q), self.span(&q));
                         }
-                        _ => name = Some(self.ident(&q)),
+                        _ => name = self.ident(&q),
                     }
                 }
-                // `*` leaves no pair.
-                let star = Ident {
-                    name: "*".into(),
-                    span: place,
-                };
-                debug_assert!(name.is_some() || text.starts_with('*'));
-                DomainName {
-                    name: name.unwrap_or(star),
-                    defines,
-                }
+                DomainName { name, defines }
             })
             .collect()
     }
@@ -197,12 +167,7 @@ impl Builder<'_> {
         };
         for p in inner {
             match p.as_rule() {
-                Rule::text_mark => {
-                    let inside = self.hole(&p).map(|h| h.inside);
-                    model.text = inside
-                        .and_then(|s| self.expanded.get(s.lo as usize..s.hi as usize))
-                        .map(Into::into);
-                }
+                Rule::text_mark => model.text = self.text_in(&p),
                 Rule::model_items => {
                     let mut items = Vec::new();
                     for item in p.into_inner() {
@@ -267,18 +232,11 @@ impl Builder<'_> {
                             .help("write `- equation` to take an equation out")
                             .refuse();
                     }
-                    match <[Ident; 1]>::try_from(columns) {
-                        Ok([column]) => items.push(ModelItem::Pair { rows, column }),
-                        Err(columns) => {
-                            // `f.(x,y)`: each by itself; which is legal is decided later.
-                            for column in columns {
-                                items.push(ModelItem::Pair {
-                                    rows: rows.clone(),
-                                    column,
-                                });
-                            }
-                        }
-                    }
+                    // `f.(x,y)`: each by itself; which is legal is decided later.
+                    items.extend(columns.into_iter().map(|column| ModelItem::Pair {
+                        rows: rows.clone(),
+                        column,
+                    }));
                 }
             }
         }

@@ -78,6 +78,26 @@ struct Node {
     open: bool,
 }
 
+impl Node {
+    fn new(kind: ExprKind, span: Span, depth: usize, open: bool) -> Self {
+        let expr = Expr { kind, span };
+        Self { expr, depth, open }
+    }
+
+    /// An error at a place if it is nested too deeply.
+    fn not_too_deep(self, at: Span) -> Outcome<Self> {
+        if self.depth > DEEPEST {
+            return Diagnostic::error("E0204", at)
+                .says(format!(
+                    "this expression is nested more than {DEEPEST} levels deep"
+                ))
+                .help("give its parts names of their own; long sums and products are no problem")
+                .refuse();
+        }
+        Ok(self)
+    }
+}
+
 /// Expressions being put together.
 #[derive(Default)]
 struct Stack {
@@ -95,14 +115,11 @@ impl Stack {
             return Ok(());
         };
         let node = match op {
-            Op::Prefix(p) => Node {
-                depth: right.depth + 1,
-                expr: Expr {
-                    span: at.to(right.expr.span),
-                    kind: ExprKind::Unary(p, Box::new(right.expr)),
-                },
-                open: true,
-            },
+            Op::Prefix(p) => {
+                let span = at.to(right.expr.span);
+                let kind = ExprKind::Unary(p, Box::new(right.expr));
+                Node::new(kind, span, right.depth + 1, true)
+            }
             Op::Infix(b) => {
                 let Some(left) = self.nodes.pop() else {
                     return Ok(());
@@ -110,89 +127,52 @@ impl Stack {
                 join(left, b, right)
             }
         };
-        if node.depth > DEEPEST {
-            return Err(Box::new(too_deep(at)));
-        }
-        self.nodes.push(node);
+        self.nodes.push(node.not_too_deep(at)?);
         Ok(())
     }
 }
 
-fn too_deep(at: Span) -> Diagnostic {
-    Diagnostic::error("E0204", at)
-        .says(format!(
-            "this expression is nested more than {DEEPEST} levels deep"
-        ))
-        .help("give its parts names of their own; long sums and products are no problem")
-}
-
 fn join(left: Node, op: BinaryOp, right: Node) -> Node {
     use BinaryOp as B;
-    let span = left.expr.span.to(right.expr.span);
-    let depth = left.depth.max(right.depth + 1);
-    let grown = |kind| Node {
-        expr: Expr { kind, span },
-        depth,
-        open: true,
-    };
+    let first = left.expr.span;
+    let span = first.to(right.expr.span);
+    // Of a chain that grows, and of a new operation.
+    let grown = left.depth.max(right.depth + 1);
+    let deeper = left.depth.max(right.depth) + 1;
     let sign = match op {
         B::Add => Some(Sign::Plus),
         B::Subtract => Some(Sign::Minus),
         _ => None,
     };
-    if let Some(sign) = sign {
-        return match left.expr.kind {
-            ExprKind::Sum(mut terms) if left.open => {
-                terms.push((sign, right.expr));
-                grown(ExprKind::Sum(terms))
-            }
-            kind => {
-                let first = Expr {
-                    kind,
-                    span: left.expr.span,
-                };
-                Node {
-                    expr: Expr {
-                        kind: ExprKind::Sum(vec![(Sign::Plus, first), (sign, right.expr)]),
-                        span,
-                    },
-                    depth: left.depth.max(right.depth) + 1,
-                    open: true,
-                }
-            }
-        };
-    }
     let factor = |op| match op {
         B::Multiply => Some(Factor::Multiply),
         B::Divide => Some(Factor::Divide),
         _ => None,
     };
-    let mut left = left;
-    if let (Some(second), true) = (factor(op), left.open) {
-        match left.expr.kind {
-            ExprKind::Product(mut factors) => {
-                factors.push((second, right.expr));
-                return grown(ExprKind::Product(factors));
-            }
-            ExprKind::Binary(first, a, b) if factor(first).is_some() => {
-                let first = factor(first).unwrap_or(Factor::Multiply);
-                return grown(ExprKind::Product(vec![
-                    (Factor::Multiply, *a),
-                    (first, *b),
-                    (second, right.expr),
-                ]));
-            }
-            kind => left.expr.kind = kind,
+    let (kind, depth) = match (left.expr.kind, sign, factor(op)) {
+        (ExprKind::Sum(mut terms), Some(sign), _) if left.open => {
+            terms.push((sign, right.expr));
+            (ExprKind::Sum(terms), grown)
         }
-    }
-    Node {
-        depth: left.depth.max(right.depth) + 1,
-        expr: Expr {
-            kind: ExprKind::Binary(op, Box::new(left.expr), Box::new(right.expr)),
-            span,
-        },
-        open: true,
-    }
+        (kind, Some(sign), _) => {
+            let first = (Sign::Plus, Expr { kind, span: first });
+            (ExprKind::Sum(vec![first, (sign, right.expr)]), deeper)
+        }
+        (ExprKind::Product(mut factors), _, Some(second)) if left.open => {
+            factors.push((second, right.expr));
+            (ExprKind::Product(factors), grown)
+        }
+        (ExprKind::Binary(op, a, b), _, Some(second)) if left.open && factor(op).is_some() => {
+            let first = factor(op).unwrap_or(Factor::Multiply);
+            let factors = vec![(Factor::Multiply, *a), (first, *b), (second, right.expr)];
+            (ExprKind::Product(factors), grown)
+        }
+        (kind, ..) => {
+            let left = Box::new(Expr { kind, span: first });
+            (ExprKind::Binary(op, left, Box::new(right.expr)), deeper)
+        }
+    };
+    Node::new(kind, span, depth, true)
 }
 
 impl Builder<'_> {
@@ -261,16 +241,10 @@ impl Builder<'_> {
                     match s.nodes.pop() {
                         Some(value) if dollar => {
                             let depth = value.depth.max(node.depth) + 1;
-                            if depth > DEEPEST {
-                                return Err(Box::new(too_deep(node.expr.span)));
-                            }
-                            let span = value.expr.span.to(node.expr.span);
+                            let (span, at) = (value.expr.span.to(node.expr.span), node.expr.span);
                             let kind = ExprKind::Dollar(Box::new(value.expr), Box::new(node.expr));
-                            s.nodes.push(Node {
-                                expr: Expr { kind, span },
-                                depth,
-                                open: false,
-                            });
+                            let node = Node::new(kind, span, depth, false);
+                            s.nodes.push(node.not_too_deep(at)?);
                         }
                         before => {
                             s.nodes.extend(before);
@@ -291,33 +265,19 @@ impl Builder<'_> {
     /// One operand.
     fn primary(&self, pair: Pair<'_, Rule>) -> Outcome<Node> {
         let span = self.span(&pair);
-        let leaf = |kind| Node {
-            expr: Expr { kind, span },
-            depth: 1,
-            open: false,
-        };
+        let leaf = |kind| Node::new(kind, span, 1, false);
         match pair.as_rule() {
             Rule::number | Rule::signed => Ok(leaf(ExprKind::Number(number(pair.as_str())))),
             Rule::quoted => Ok(leaf(ExprKind::Text(Self::unquote(&pair)))),
             Rule::group => {
                 let inner = need(&mut pair.into_inner(), span, "an expression")?;
-                let mut node = self.chain(inner)?;
-                node.expr.span = span;
-                node.depth += 1;
-                node.open = false;
-                self.not_too_deep(node)
+                let node = self.chain(inner)?;
+                Node::new(node.expr.kind, span, node.depth + 1, false).not_too_deep(span)
             }
             Rule::aggregate => self.aggregate(pair),
             Rule::expression => self.chain(pair),
             _ => self.apply(pair),
         }
-    }
-
-    fn not_too_deep(&self, node: Node) -> Outcome<Node> {
-        if node.depth > DEEPEST {
-            return Err(Box::new(too_deep(node.expr.span)));
-        }
-        Ok(node)
     }
 
     /// Any single operand as an expression (`put` items, what `$` takes).
@@ -350,7 +310,7 @@ impl Builder<'_> {
         let (mut attribute, mut arguments, mut depth) = (None, None, 0);
         for p in inner {
             match p.as_rule() {
-                Rule::attribute => attribute = p.into_inner().next().map(|n| self.ident(&n)),
+                Rule::attribute => attribute = self.first_ident(p),
                 _ => {
                     let (list, d) = self.argument_list(p)?;
                     depth = d;
@@ -362,20 +322,10 @@ impl Builder<'_> {
             && arguments.is_none()
             && let Some(kind) = ExprKind::special(&name.name, || self.modes.at(name.span).undf)
         {
-            return Ok(Node {
-                expr: Expr { kind, span },
-                depth: 1,
-                open: false,
-            });
+            return Ok(Node::new(kind, span, 1, false));
         }
-        self.not_too_deep(Node {
-            expr: Expr {
-                kind: ExprKind::Apply(name, attribute, arguments),
-                span,
-            },
-            depth: depth + 1,
-            open: false,
-        })
+        let kind = ExprKind::Apply(name, attribute, arguments);
+        Node::new(kind, span, depth + 1, false).not_too_deep(span)
     }
 
     fn aggregate(&self, pair: Pair<'_, Rule>) -> Outcome<Node> {
@@ -398,14 +348,10 @@ impl Builder<'_> {
             }
         }
         match (domain, body) {
-            (Some(domain), Some(body)) => self.not_too_deep(Node {
-                depth: body.depth + 1,
-                expr: Expr {
-                    kind: ExprKind::Aggregate(op, Box::new(domain), Box::new(body.expr)),
-                    span,
-                },
-                open: false,
-            }),
+            (Some(domain), Some(body)) => {
+                let kind = ExprKind::Aggregate(op, Box::new(domain), Box::new(body.expr));
+                Node::new(kind, span, body.depth + 1, false).not_too_deep(span)
+            }
             _ => Err(expected(span, "an index and an expression")),
         }
     }

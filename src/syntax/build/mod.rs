@@ -184,6 +184,26 @@ impl Builder<'_> {
         }
     }
 
+    /// The name inside of a pair.
+    fn first_ident(&self, pair: Pair<'_, Rule>) -> Option<Ident> {
+        parts(pair).next().map(|n| self.ident(&n))
+    }
+
+    /// A keyword in small letters.
+    fn keyword(&self, pair: &Pair<'_, Rule>) -> Ident {
+        Ident {
+            name: pair.as_str().to_ascii_lowercase().into(),
+            span: self.span(pair),
+        }
+    }
+
+    /// The text inside of the hole that a mark stands for.
+    fn text_in(&self, pair: &Pair<'_, Rule>) -> Option<Box<str>> {
+        let inside = self.hole(pair)?.inside;
+        let text = self.expanded.get(inside.lo as usize..inside.hi as usize);
+        text.map(Into::into)
+    }
+
     /// The hole that a mark stands for.
     fn hole(&self, pair: &Pair<'_, Rule>) -> Option<&Hole> {
         let digits = pair.as_str().trim_matches(['\u{1}', '\u{2}']);
@@ -195,4 +215,10 @@ impl Builder<'_> {
         let s = pair.as_str();
         s.get(1..s.len().saturating_sub(1)).unwrap_or("").into()
     }
+}
+
+/// A text without the quotes around it.
+fn bare(text: &str) -> &str {
+    let inside = |q: &char| text.strip_prefix(*q)?.strip_suffix(*q);
+    ['\'', '"'].iter().find_map(inside).unwrap_or(text)
 }

@@ -3,7 +3,7 @@
 use pest::iterators::Pair;
 
 use super::expression::number;
-use super::{Builder, Outcome, expected, need, parts};
+use super::{Builder, Outcome, bare, expected, need, parts};
 use crate::diag::Diagnostic;
 use crate::source::Span;
 use crate::syntax::ast::*;
@@ -18,27 +18,21 @@ impl Builder<'_> {
             Rule::loop_statement => {
                 let mut inner = parts(pair);
                 let domain = self.domain(need(&mut inner, at, "an index")?)?;
-                Ok(StmtKind::Loop(
-                    domain,
-                    self.body(need(&mut inner, at, "a statement")?)?,
-                ))
+                let body = self.body(need(&mut inner, at, "a statement")?)?;
+                Ok(StmtKind::Loop(domain, body))
             }
             Rule::while_statement => {
                 let mut inner = parts(pair);
                 let condition = self.expression(need(&mut inner, at, "a condition")?)?;
-                Ok(StmtKind::While(
-                    condition,
-                    self.body(need(&mut inner, at, "a statement")?)?,
-                ))
+                let body = self.body(need(&mut inner, at, "a statement")?)?;
+                Ok(StmtKind::While(condition, body))
             }
             Rule::for_statement => self.for_statement(pair),
             Rule::repeat_statement => {
                 let mut inner = parts(pair);
                 let body = self.body(need(&mut inner, at, "a statement")?)?;
-                Ok(StmtKind::Repeat(
-                    body,
-                    self.expression(need(&mut inner, at, "a condition")?)?,
-                ))
+                let condition = self.expression(need(&mut inner, at, "a condition")?)?;
+                Ok(StmtKind::Repeat(body, condition))
             }
             Rule::if_statement => {
                 let mut branches = Vec::new();
@@ -76,10 +70,8 @@ impl Builder<'_> {
                 Ok(StmtKind::Abort(condition, items, no_error))
             }
             Rule::option_statement => {
-                let items = parts(pair)
-                    .map(|p| self.option_item(p))
-                    .collect::<Outcome<_>>()?;
-                Ok(StmtKind::Option(items))
+                let items = parts(pair).map(|p| self.option_item(p));
+                Ok(StmtKind::Option(items.collect::<Outcome<_>>()?))
             }
             Rule::solve_statement => self.solve(pair),
             Rule::put_statement => self.put(pair),
@@ -94,10 +86,8 @@ impl Builder<'_> {
             Rule::draw_statement => {
                 let mut inner = parts(pair);
                 let name = self.ident(&need(&mut inner, at, "a figure")?);
-                Ok(StmtKind::Draw(
-                    name,
-                    inner.next().map(|e| self.expression(e)).transpose()?,
-                ))
+                let file = inner.next().map(|e| self.expression(e)).transpose()?;
+                Ok(StmtKind::Draw(name, file))
             }
             _ => Diagnostic::error("E0210", at)
                 .says("a declaration cannot stand here")
@@ -108,16 +98,16 @@ impl Builder<'_> {
 
     /// Statements inside a block.
     fn body(&self, pair: Pair<'_, Rule>) -> Outcome<Vec<Stmt>> {
-        let mut list = Vec::new();
-        for p in parts(pair) {
+        let stmt = |p: Pair<'_, Rule>| {
             let span = self.span(&p);
-            list.push(Stmt {
-                kind: self.action(p)?,
-                span,
-                modes: self.modes.clone(),
-            });
-        }
-        Ok(list)
+            Ok(self.stmt(self.action(p)?, span))
+        };
+        parts(pair).map(stmt).collect()
+    }
+
+    fn stmt(&self, kind: StmtKind, span: Span) -> Stmt {
+        let modes = self.modes.clone();
+        Stmt { kind, span, modes }
     }
 
     pub(super) fn reference(&self, pair: Pair<'_, Rule>) -> Outcome<Reference> {
@@ -127,7 +117,7 @@ impl Builder<'_> {
         let (mut attribute, mut indices) = (None, Vec::new());
         for p in inner {
             match p.as_rule() {
-                Rule::attribute => attribute = p.into_inner().next().map(|n| self.ident(&n)),
+                Rule::attribute => attribute = self.first_ident(p),
                 _ => indices = self.arguments(p)?,
             }
         }
@@ -169,10 +159,10 @@ impl Builder<'_> {
                 }
                 _ => {
                     let nonzero = p.as_str().starts_with("$=");
-                    let value = match p.into_inner().next() {
-                        Some(e) => self.expression(e)?,
-                        None => break,
+                    let Some(e) = p.into_inner().next() else {
+                        break;
                     };
+                    let value = self.expression(e)?;
                     return Ok(StmtKind::Assign(Assign {
                         target,
                         condition,
@@ -250,13 +240,14 @@ impl Builder<'_> {
             match p.as_rule() {
                 Rule::condition => condition = Some(self.condition(p)?),
                 _ => {
-                    loops = p.as_str().parse().ok().filter(|n| *n > 0).ok_or_else(|| {
-                        Box::new(
-                            Diagnostic::error("E0217", self.span(&p))
-                                .says("the number of loops to leave is a whole number from 1 on")
-                                .help("`break;` leaves one loop, `break 2;` two"),
-                        )
-                    })?;
+                    let count = p.as_str().parse().ok().filter(|n| *n > 0);
+                    let Some(count) = count else {
+                        return Diagnostic::error("E0217", self.span(&p))
+                            .says("the number of loops to leave is a whole number from 1 on")
+                            .help("`break;` leaves one loop, `break 2;` two")
+                            .refuse();
+                    };
+                    loops = count;
                 }
             }
         }
@@ -360,64 +351,52 @@ impl Builder<'_> {
         for p in inner {
             let place = self.span(&p);
             match p.as_rule() {
-                Rule::using => {
-                    let name = parts(p).next().map(|n| self.ident(&n));
-                    if using.is_some() {
-                        return Diagnostic::error("E0218", place)
-                            .says("`using` stands here twice")
-                            .refuse();
-                    }
-                    using = name;
+                Rule::using if using.is_some() => {
+                    return Diagnostic::error("E0218", place)
+                        .says("`using` stands here twice")
+                        .refuse();
                 }
-                Rule::scenario => scenario = parts(p).next().map(|n| self.ident(&n)),
+                Rule::using => using = self.first_ident(p),
+                Rule::scenario => scenario = self.first_ident(p),
+                _ if objective.is_some() => {
+                    return Diagnostic::error("E0218", place)
+                        .says("a second direction stands here")
+                        .help("a solve has one objective: `solve m using lp minimizing z;`")
+                        .refuse();
+                }
                 _ => {
                     let mut sides = parts(p);
-                    let word = need(&mut sides, place, "a direction")?;
-                    let sense = if word.as_str().as_bytes()[..3.min(word.as_str().len())]
-                        .eq_ignore_ascii_case(b"min")
-                    {
-                        Sense::Minimize
-                    } else {
-                        Sense::Maximize
+                    let word = need(&mut sides, place, "a direction")?.as_str().get(..3);
+                    let sense = match word.is_some_and(|w| w.eq_ignore_ascii_case("min")) {
+                        true => Sense::Minimize,
+                        false => Sense::Maximize,
                     };
                     let variable = self.ident(&need(&mut sides, place, "a variable")?);
-                    if objective.is_some() {
-                        return Diagnostic::error("E0218", place)
-                            .says("a second direction stands here")
-                            .help("a solve has one objective: `solve m using lp minimizing z;`")
-                            .refuse();
-                    }
                     objective = Some((sense, variable));
                 }
             }
         }
-        match using {
-            Some(using) => Ok(StmtKind::Solve(Solve {
-                model,
-                using,
-                objective,
-                scenario,
-            })),
-            None => Diagnostic::error("E0218", at)
+        let Some(using) = using else {
+            let name = &model.name;
+            return Diagnostic::error("E0218", at)
                 .says(format!(
-                    "`solve {}` does not say which type of model it is",
-                    model.name
+                    "`solve {name}` does not say which type of model it is"
                 ))
-                .help(format!(
-                    "write `solve {} using lp minimizing z;`",
-                    model.name
-                ))
-                .refuse(),
-        }
+                .help(format!("write `solve {name} using lp minimizing z;`"))
+                .refuse();
+        };
+        Ok(StmtKind::Solve(Solve {
+            model,
+            using,
+            objective,
+            scenario,
+        }))
     }
 
     fn put(&self, pair: Pair<'_, Rule>) -> Outcome<StmtKind> {
         let at = self.span(&pair);
         let mut inner = parts(pair);
-        let keyword = need(&mut inner, at, "`put`")?
-            .as_str()
-            .to_ascii_lowercase()
-            .into();
+        let keyword = self.keyword(&need(&mut inner, at, "`put`")?).name;
         let mut condition = None;
         let mut items = Vec::new();
         for p in inner {
@@ -426,14 +405,12 @@ impl Builder<'_> {
                 Rule::condition => condition = Some(self.condition(p)?),
                 Rule::new_line => items.push(PutItem::NewLine),
                 Rule::put_column | Rule::put_row => {
-                    let column = p.as_rule() == Rule::put_column;
+                    let of = match p.as_rule() {
+                        Rule::put_column => PutItem::Column,
+                        _ => PutItem::Row,
+                    };
                     let Some(e) = parts(p).next() else { continue };
-                    let e = self.operand(e)?;
-                    items.push(if column {
-                        PutItem::Column(e)
-                    } else {
-                        PutItem::Row(e)
-                    });
+                    items.push(of(self.operand(e)?));
                 }
                 _ => items.push(self.put_value(p, place)?),
             }
@@ -455,11 +432,10 @@ impl Builder<'_> {
             match p.as_rule() {
                 Rule::condition => condition = Some(self.condition(p)?),
                 Rule::align => {
-                    align = Some(if p.as_str() == "<>" {
-                        '='
-                    } else {
-                        p.as_str().chars().next().unwrap_or('>')
-                    })
+                    align = match p.as_str() {
+                        "<>" => Some('='),
+                        sign => sign.chars().next(),
+                    }
                 }
                 Rule::width => width = Some(self.put_number(p)?),
                 _ => {
@@ -499,11 +475,7 @@ impl Builder<'_> {
     fn exchange(&self, pair: Pair<'_, Rule>) -> Outcome<StmtKind> {
         let at = self.span(&pair);
         let mut inner = parts(pair);
-        let word = need(&mut inner, at, "a keyword")?;
-        let keyword = Ident {
-            name: word.as_str().to_ascii_lowercase().into(),
-            span: self.span(&word),
-        };
+        let keyword = self.keyword(&need(&mut inner, at, "a keyword")?);
         let (mut file, mut items, mut condition) = (None, Vec::new(), None);
         for p in inner {
             let span = self.span(&p);
@@ -522,17 +494,7 @@ impl Builder<'_> {
         });
         Ok(match condition {
             None => statement,
-            Some(c) => StmtKind::If(
-                vec![(
-                    c,
-                    vec![Stmt {
-                        kind: statement,
-                        span: at,
-                        modes: self.modes.clone(),
-                    }],
-                )],
-                Vec::new(),
-            ),
+            Some(c) => StmtKind::If(vec![(c, vec![self.stmt(statement, at)])], Vec::new()),
         })
     }
 
@@ -545,7 +507,7 @@ impl Builder<'_> {
                 Rule::name if name.is_none() => name = Some(self.ident(&p)),
                 Rule::name | Rule::any_label => other = Some(self.ident(&p)),
                 Rule::attribute => {
-                    let attribute = p.into_inner().next().map(|q| self.ident(&q));
+                    let attribute = self.first_ident(p);
                     match other {
                         Some(_) => suffix = attribute,
                         None => into = attribute,
@@ -574,10 +536,7 @@ impl Builder<'_> {
         let at = self.span(&pair);
         let mut inner = parts(pair);
         let word = need(&mut inner, at, "a directive")?;
-        let keyword = Ident {
-            name: word.as_str().to_ascii_lowercase().into(),
-            span: self.span(&word),
-        };
+        let keyword = self.keyword(&word);
         if word.as_rule() == Rule::clear_word {
             return Ok(StmtKind::Clear {
                 kill: &*keyword.name == "kill",
@@ -589,11 +548,7 @@ impl Builder<'_> {
             let span = self.span(&p);
             match p.as_rule() {
                 Rule::gdx_file | Rule::gdx_name => {
-                    let t = p.as_str().trim();
-                    let t = ['\'', '"']
-                        .iter()
-                        .find_map(|q| t.strip_prefix(*q)?.strip_suffix(*q))
-                        .unwrap_or(t);
+                    let t = bare(p.as_str().trim());
                     if !t.is_empty() {
                         file = Some((t.into(), span));
                     }
@@ -636,12 +591,9 @@ impl Builder<'_> {
             let place = self.span(&p);
             match p.as_rule() {
                 Rule::domain_of_element => {
-                    let items = p
-                        .into_inner()
-                        .map(|i| self.domain_item(i))
-                        .collect::<Outcome<Vec<_>>>()?;
+                    let items = p.into_inner().map(|i| self.domain_item(i));
                     domain = Some(Domain {
-                        items,
+                        items: items.collect::<Outcome<_>>()?,
                         condition: None,
                         span: place,
                     });
@@ -659,19 +611,13 @@ impl Builder<'_> {
             }
         }
         if let Some(c) = condition {
-            match &mut domain {
-                Some(d) => {
-                    d.span = d.span.to(c.span);
-                    d.condition = Some(c);
-                }
-                None => {
-                    domain = Some(Domain {
-                        items: Vec::new(),
-                        span: c.span,
-                        condition: Some(c),
-                    })
-                }
-            }
+            let d = domain.get_or_insert(Domain {
+                items: Vec::new(),
+                span: c.span,
+                condition: None,
+            });
+            d.span = d.span.to(c.span);
+            d.condition = Some(c);
         }
         Ok(FigureElement {
             kind,
