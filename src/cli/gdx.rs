@@ -5,6 +5,7 @@ use super::commands::{Status, complain};
 use super::derive::tell;
 use crate::diag::nearest;
 use crate::gdx::{Domain, Error, File, Value};
+use crate::report::study::comma_separated;
 
 /// Shows the symbols of a file, or the records of one; the exit status.
 pub(super) fn show(a: &GdxArgs) -> Status {
@@ -32,7 +33,7 @@ pub(super) fn show(a: &GdxArgs) -> Status {
 }
 
 /// Lines of cells; the first has the names of the columns.
-pub(super) type Rows = Vec<Vec<String>>;
+type Rows = Vec<Vec<String>>;
 
 fn head(file: &File<'_>, name: &str) -> String {
     let packed = if file.packed { ", compressed" } else { "" };
@@ -122,15 +123,6 @@ fn value(file: &File<'_>, v: Value) -> String {
         Value::Eps => "EPS".into(),
         Value::Acronym(n) => file.acronyms().nth(n as usize).unwrap_or("?").into(),
     }
-}
-
-pub(super) fn comma_separated(rows: &Rows) -> String {
-    let mut out = csv::Writer::from_writer(Vec::new());
-    for row in rows {
-        // A vector takes everything: writing cannot fail.
-        let _ = out.write_record(row);
-    }
-    String::from_utf8(out.into_inner().unwrap_or_default()).unwrap_or_default()
 }
 
 /// Columns of equal width; numbers stand to the right.

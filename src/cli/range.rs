@@ -3,10 +3,10 @@
 use super::args::{EXECUTION, RangeArgs, TableFormat};
 use super::commands::{Status, complain};
 use super::derive::{studied, tell, width};
-use super::gdx::comma_separated;
 use crate::formulation::derive::Primal;
 use crate::formulation::page::{Format, write};
 use crate::formulation::range::{Ranges, named, of, page};
+use crate::report::study::comma_separated;
 use crate::run::Machine;
 
 /// Carries out `bmod range`; its exit status.

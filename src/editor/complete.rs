@@ -286,12 +286,8 @@ fn propose(list: &mut List, d: &Document, word: usize, at: usize) {
                 list.add(*t, CompletionKind::Option, "option", "solver of the type");
             }
             for row in OPTION_TABLES.iter().flat_map(|t| t.all()) {
-                list.add(
-                    row.name,
-                    CompletionKind::Option,
-                    format!("default {}", row.default),
-                    row.meaning,
-                );
+                let default = format!("default {}", row.default);
+                list.add(row.name, CompletionKind::Option, default, row.meaning);
             }
             return;
         }

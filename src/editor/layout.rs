@@ -159,24 +159,16 @@ impl<'a> Layout<'a> {
         }
         let mut open: Vec<(usize, Inside)> = Vec::new();
         for (n, t) in scan.tokens.iter().enumerate() {
-            match t.role {
-                Role::Open => {
-                    let within = open.last().map_or(Inside::Nothing, |o| o.1);
-                    layout.inside.push(within);
-                    open.push((n, layout.opens(n, within)));
-                }
-                Role::Close => {
-                    if let Some((o, _)) = open.pop() {
-                        layout.partner.insert(n, o);
-                        layout.partner.insert(o, n);
-                    }
-                    layout
-                        .inside
-                        .push(open.last().map_or(Inside::Nothing, |o| o.1));
-                }
-                _ => layout
-                    .inside
-                    .push(open.last().map_or(Inside::Nothing, |o| o.1)),
+            if t.role == Role::Close
+                && let Some((o, _)) = open.pop()
+            {
+                layout.partner.insert(n, o);
+                layout.partner.insert(o, n);
+            }
+            let within = open.last().map_or(Inside::Nothing, |o| o.1);
+            layout.inside.push(within);
+            if t.role == Role::Open {
+                open.push((n, layout.opens(n, within)));
             }
             if layout.begins.contains_key(&n) && scan.statements[layout.begins[&n]].depth == 0 {
                 open.clear();
@@ -206,14 +198,9 @@ impl<'a> Layout<'a> {
             let range = lines.range(line, self.text);
             let body = &self.text[range.lo..range.hi];
             let from = next;
-            while self
-                .scan
-                .tokens
-                .get(next)
-                .is_some_and(|t| t.lo < range.hi.max(range.lo + 1))
-            {
-                next += 1;
-            }
+            let end = range.hi.max(range.lo + 1);
+            let here = self.scan.tokens[from..].iter().take_while(|t| t.lo < end);
+            next += here.count();
             let tokens = from..next;
             let table = self.scan.tokens[tokens.clone()].iter().any(|t| t.table);
             rows.push(match lines.kinds[line] {

@@ -121,47 +121,31 @@ impl Document {
             Subject::Label(n) => (n.as_str(), false),
         };
         for (n, t) in self.scan.tokens.iter().enumerate() {
-            let declares = matches!(t.role, Role::Declared | Role::Defined);
-            match t.role {
-                Role::Name | Role::Declared | Role::Defined | Role::Argument
-                    if is_symbol
-                        && self.word(n).eq_ignore_ascii_case(name)
-                        && !(t.role == Role::Argument && self.is_control(n)) =>
-                {
-                    out.push((t.lo, t.hi, declares));
-                }
+            let text = self.word(n);
+            let whole = || vec![(0, text.len())];
+            let pieces = match t.role {
+                Role::Name | Role::Declared | Role::Defined if is_symbol => whole(),
+                Role::Argument if is_symbol && !self.is_control(n) => whole(),
                 // An expression in brackets, or an acronym as a value.
                 Role::Number if is_symbol && t.data => {
-                    let text = self.word(n);
-                    let found = words_in(text)
-                        .filter(|&(lo, hi, _)| text[lo..hi].eq_ignore_ascii_case(name));
-                    out.extend(found.map(|(lo, hi, _)| (t.lo + lo, t.lo + hi, false)));
+                    words_in(text).map(|(lo, hi, _)| (lo, hi)).collect()
                 }
-                Role::Label if is_symbol => {
-                    let text = self.word(n);
-                    let found = symbols_in_label(text, self.is_behind_set(n)).into_iter();
-                    let found = found.filter(|&(lo, hi)| text[lo..hi].eq_ignore_ascii_case(name));
-                    out.extend(found.map(|(lo, hi)| (t.lo + lo, t.lo + hi, false)));
+                Role::Label if is_symbol => symbols_in_label(text, self.is_behind_set(n)),
+                Role::Label => whole(),
+                Role::Quoted if !is_symbol && between_quotes(text).is_some() => {
+                    vec![(1, text.len() - 1)]
                 }
-                Role::Label if !is_symbol && self.word(n).eq_ignore_ascii_case(name) => {
-                    out.push((t.lo, t.hi, false))
+                Role::Comment if is_symbol && text.starts_with("*=") => {
+                    let quoted = |before| matches!(before, Some(b'\'' | b'"' | b'.'));
+                    let claimed = words_in(text).filter(|w| !quoted(w.2));
+                    claimed.map(|(lo, hi, _)| (lo, hi)).collect()
                 }
-                Role::Quoted if !is_symbol => {
-                    let inside = between_quotes(self.word(n));
-                    if inside.is_some_and(|l| l.eq_ignore_ascii_case(name)) {
-                        out.push((t.lo + 1, t.hi - 1, false));
-                    }
-                }
-                Role::Comment if is_symbol && self.word(n).starts_with("*=") => {
-                    let text = self.word(n);
-                    let found = words_in(text).filter(|&(lo, hi, before)| {
-                        !matches!(before, Some(b'\'' | b'"' | b'.'))
-                            && text[lo..hi].eq_ignore_ascii_case(name)
-                    });
-                    out.extend(found.map(|(lo, hi, _)| (t.lo + lo, t.lo + hi, false)));
-                }
-                _ => {}
-            }
+                _ => continue,
+            };
+            let declares = matches!(t.role, Role::Declared | Role::Defined);
+            let named = |(lo, hi): &(usize, usize)| text[*lo..*hi].eq_ignore_ascii_case(name);
+            let pieces = pieces.into_iter().filter(named);
+            out.extend(pieces.map(|(lo, hi)| (t.lo + lo, t.lo + hi, declares)));
         }
         out
     }

@@ -125,10 +125,8 @@ impl Editor {
             };
             match s.class {
                 _ if s.class.declares() && d.scan.tokens[s.first].role == Role::Keyword => {
-                    let names: Vec<usize> = tokens
-                        .clone()
-                        .filter(|t| d.scan.tokens[*t].role == Role::Declared)
-                        .collect();
+                    let declared = |t: &usize| d.scan.tokens[*t].role == Role::Declared;
+                    let names: Vec<usize> = tokens.clone().filter(declared).collect();
                     for (n, &t) in names.iter().enumerate() {
                         let end = names.get(n + 1).copied().unwrap_or(tokens.end).max(t + 1) - 1;
                         let range = d.range(d.scan.tokens[t].lo, d.scan.tokens[end.max(t)].hi);
@@ -136,20 +134,13 @@ impl Editor {
                     }
                 }
                 Class::Equation if d.scan.tokens[s.first].role == Role::Defined => {
-                    add(
-                        format!("{}..", d.word(s.first)),
-                        s.first,
-                        d.statement_range(s),
-                        "definition",
-                    );
+                    let name = format!("{}..", d.word(s.first));
+                    add(name, s.first, d.statement_range(s), "definition");
                 }
                 Class::Other if matches!(word.as_str(), "solve" | "figure") && tokens.len() > 1 => {
+                    let words = tokens.map(|t| d.word(t)).filter(|w| *w != ";");
                     let names: Vec<&str> = match word.as_str() {
-                        "solve" => tokens
-                            .clone()
-                            .map(|t| d.word(t))
-                            .filter(|w| *w != ";")
-                            .collect(),
+                        "solve" => words.collect(),
                         _ => vec![d.word(s.first + 1)],
                     };
                     let named = s.first + usize::from(word == "figure");
@@ -195,9 +186,8 @@ impl Editor {
             }
             if *k == LineKind::Directive {
                 let r = lines.range(n, &d.text);
-                let word = directive(&d.text[r.lo..r.hi], b'$')
-                    .map(|w| w.0)
-                    .unwrap_or_default();
+                let word = directive(&d.text[r.lo..r.hi], b'$');
+                let word = word.map(|w| w.0).unwrap_or_default();
                 if word.starts_with("ifthen") {
                     open.push(n);
                 } else if word == "endif"
@@ -208,11 +198,8 @@ impl Editor {
             }
         }
         if let Some(first) = comment {
-            add(
-                first,
-                lines.kinds.len().saturating_sub(1),
-                FoldKind::Comment,
-            );
+            let last = lines.kinds.len().saturating_sub(1);
+            add(first, last, FoldKind::Comment);
         }
         out.sort_by_key(|f| (f.start, std::cmp::Reverse(f.end)));
         out.dedup_by_key(|f| f.start);
@@ -225,13 +212,10 @@ impl Editor {
             return Vec::new();
         };
         let mut kinds: FxHashMap<String, CompletionKind> = FxHashMap::default();
-        if let Some(a) = self.analysis(file) {
-            for p in a.programs() {
-                for (_, s) in p.symbols.iter().skip(1) {
-                    kinds
-                        .entry(s.name.to_lowercase())
-                        .or_insert_with(|| kind(s));
-                }
+        for p in self.analysis(file).into_iter().flat_map(|a| a.programs()) {
+            for (_, s) in p.symbols.iter().skip(1) {
+                let known = kinds.entry(s.name.to_lowercase());
+                known.or_insert_with(|| kind(s));
             }
         }
         for s in &d.scan.statements {
@@ -264,11 +248,8 @@ impl Editor {
         let Some(d) = self.document(file) else {
             return Vec::new();
         };
-        let solves = d
-            .scan
-            .statements
-            .iter()
-            .filter(|s| d.word(s.first).eq_ignore_ascii_case("solve"));
+        let statements = d.scan.statements.iter();
+        let solves = statements.filter(|s| d.word(s.first).eq_ignore_ascii_case("solve"));
         let both = |range| {
             [("Run", "bmod.run"), ("Why", "bmod.why")].map(|(title, command)| Lens {
                 range,

@@ -41,7 +41,7 @@ struct File<'a> {
 struct Solve<'a> {
     model: &'a str,
     using: &'a str,
-    sense: Option<&'static str>,
+    sense: Option<Sense>,
     objective: Option<u32>,
     rows: Vec<Line>,
     columns: Vec<Line>,
@@ -115,10 +115,7 @@ pub fn to_json(file: &str, solves: &[Solved<'_>]) -> String {
         Solve {
             model: solved.model,
             using: solved.using.name(),
-            sense: instance.objective.map(|o| match o.sense {
-                Sense::Minimize => "min",
-                Sense::Maximize => "max",
-            }),
+            sense: instance.objective.map(|o| o.sense),
             objective: instance.objective.map(|o| o.column),
             rows: rows(solved),
             columns: columns(solved),

@@ -28,19 +28,8 @@ pub fn table(title: &str, s: &Study) -> String {
         Reference::None => writeln!(out, "nothing was solved"),
     };
     out.push('\n');
-    let head = [
-        "solver",
-        "setting",
-        "status",
-        "seconds",
-        "error",
-        "objective",
-        "primal",
-        "dual",
-        "compl.",
-        "iterations",
-    ];
-    let mut lines: Vec<Vec<String>> = vec![head.iter().map(|h| h.to_string()).collect()];
+    let head = "solver,setting,status,seconds,error,objective,primal,dual,compl.,iterations";
+    let mut lines: Vec<Vec<String>> = vec![head.split(',').map(str::to_string).collect()];
     for r in &s.runs {
         lines.push(vec![
             r.way.family.to_string(),
@@ -55,14 +44,9 @@ pub fn table(title: &str, s: &Study) -> String {
             r.iterations.to_string(),
         ]);
     }
-    let width: Vec<usize> = (0..head.len())
-        .map(|c| {
-            lines
-                .iter()
-                .map(|l| l[c].chars().count())
-                .max()
-                .unwrap_or(0)
-        })
+    let widest = |c: usize| lines.iter().map(|l| l[c].chars().count()).max();
+    let width: Vec<usize> = (0..lines[0].len())
+        .map(|c| widest(c).unwrap_or(0))
         .collect();
     for (k, line) in lines.iter().enumerate() {
         for (c, cell) in line.iter().enumerate() {
@@ -85,7 +69,6 @@ pub fn table(title: &str, s: &Study) -> String {
 
 /// One line per run, all digits.
 pub fn csv(s: &Study) -> String {
-    let mut out = csv::Writer::from_writer(Vec::new());
     let number = |v: Option<f64>| v.map_or(String::new(), |v| v.to_string());
     let head =
         "solver,setting,status,seconds,error,objective,primal,dual,complementarity,iterations";
@@ -104,7 +87,14 @@ pub fn csv(s: &Study) -> String {
             r.iterations.to_string(),
         ]
     }));
+    comma_separated(&lines)
+}
+
+/// Lines of cells as comma-separated values.
+pub fn comma_separated(lines: &[Vec<String>]) -> String {
+    let mut out = csv::Writer::from_writer(Vec::new());
     for line in lines {
+        // A vector takes everything: writing cannot fail.
         let _ = out.write_record(line);
     }
     String::from_utf8(out.into_inner().unwrap_or_default()).unwrap_or_default()

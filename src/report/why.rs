@@ -38,38 +38,34 @@ fn counted(n: usize, one: &str) -> String {
 }
 
 fn short(v: f64) -> String {
-    if v == 0.0 || (1e-4..1e7).contains(&v.abs()) {
-        let text = format!("{v:.6}");
-        if text.contains('.') && v.fract().abs() > 1e-9 {
-            let short = digits((v * 1e6).round() / 1e6);
-            if short == "0" {
-                format!("{v:.2e}")
-            } else {
-                short
-            }
-        } else {
-            digits(v.round())
-        }
-    } else {
-        format!("{v:.2e}")
+    let exponential = || format!("{v:.2e}");
+    if v != 0.0 && !(1e-4..1e7).contains(&v.abs()) {
+        return exponential();
     }
+    if v.fract().abs() <= 1e-9 {
+        return digits(v.round());
+    }
+    match digits((v * 1e6).round() / 1e6) {
+        short if short == "0" => exponential(),
+        short => short,
+    }
+}
+
+/// Notes a name in a list.
+fn noted(list: &mut Vec<String>, name: String) -> String {
+    if !list.contains(&name) {
+        list.push(name.clone());
+    }
+    name
 }
 
 impl Explanation {
     fn row(&mut self, i: usize, names: &dyn Names) -> String {
-        let name = names.row(i);
-        if !self.rows.contains(&name) {
-            self.rows.push(name.clone());
-        }
-        name
+        noted(&mut self.rows, names.row(i))
     }
 
     fn column(&mut self, j: usize, names: &dyn Names) -> String {
-        let name = names.column(j);
-        if !self.columns.contains(&name) {
-            self.columns.push(name.clone());
-        }
-        name
+        noted(&mut self.columns, names.column(j))
     }
 
     fn finding(&mut self, f: &Finding, instance: &Instance, names: &dyn Names) -> String {
@@ -215,18 +211,11 @@ impl Explanation {
         instance: &Instance,
         names: &dyn Names,
     ) -> String {
-        let rows = members
-            .iter()
-            .filter(|m| matches!(m.0, Member::Row(_)))
-            .count();
-        let bounds = members.len() - rows;
-        let mut what = Vec::new();
-        if rows > 0 {
-            what.push(counted(rows, "row"));
-        }
-        if bounds > 0 {
-            what.push(counted(bounds, "bound"));
-        }
+        let is_row = |m: &&(Member, f64)| matches!(m.0, Member::Row(_));
+        let rows = members.iter().filter(is_row).count();
+        let counts = [(rows, "row"), (members.len() - rows, "bound")].into_iter();
+        let counts = counts.filter(|(n, _)| *n > 0);
+        let what: Vec<String> = counts.map(|(n, one)| counted(n, one)).collect();
         let alone = match (members.len(), shown) {
             (1, _) => "cannot be satisfied",
             (_, true) => {

@@ -89,14 +89,9 @@ impl Machine<'_> {
             SymbolKind::Variable(_) => "VARIABLE",
             _ => "EQUATION",
         };
-        let shown_name = match attr {
-            Some(a) => format!("{}.{a}", symbol.name),
-            None => symbol.name.to_string(),
-        };
-        let short = match attr {
-            Some(a) => format!("{}.{}", symbol.name, a.to_lowercase()),
-            None => symbol.name.to_string(),
-        };
+        let named = |a: &str| format!("{}.{a}", symbol.name);
+        let shown_name = attr.map_or_else(|| symbol.name.to_string(), named);
+        let short = attr.map_or_else(|| symbol.name.to_string(), |a| named(&a.to_lowercase()));
         let numbers = self.numbers(s);
         if table.dim() == 0 {
             let value = table.get(&[]);

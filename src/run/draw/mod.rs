@@ -500,12 +500,9 @@ impl Machine<'_> {
                 _ => scene.y_label = Some(text),
             }
         }
-        if let Some(&w) = numbers.first() {
-            scene.width = Some(w);
-        }
-        if let Some(&h) = numbers.get(1) {
-            scene.height = Some(h);
-        }
+        let mut numbers = numbers.into_iter();
+        scene.width = numbers.next().or(scene.width);
+        scene.height = numbers.next().or(scene.height);
         // Who writes about axes wants to see them.
         if &*e.kind != "size" && scene.axes.is_none() {
             scene.axes = Some(true);
