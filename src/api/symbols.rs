@@ -37,16 +37,7 @@ pub enum SymbolKind {
 
 impl fmt::Display for SymbolKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Set => "set",
-            Self::Parameter => "parameter",
-            Self::Variable => "variable",
-            Self::Equation => "equation",
-            Self::Model => "model",
-            Self::File => "file",
-            Self::Acronym => "acronym",
-            Self::Figure => "figure",
-        })
+        f.write_str(&format!("{self:?}").to_lowercase())
     }
 }
 

@@ -213,7 +213,10 @@ impl Evaluator {
     /// The entries of the Jacobian at a point, row by row.
     ///
     /// Errors: as [`Self::jacobian`].
-    pub fn jacobian_rows(&mut self, x: &[f64]) -> Result<Vec<Vec<(usize, f64)>>, EvalFailure> {
+    pub(crate) fn jacobian_rows(
+        &mut self,
+        x: &[f64],
+    ) -> Result<Vec<Vec<(usize, f64)>>, EvalFailure> {
         let mut values = vec![0.0; self.jacobian_column.len()];
         self.jacobian(x, &mut values)?;
         let entry = |k: usize| (self.jacobian_column[k] as usize, values[k]);

@@ -297,14 +297,10 @@ impl Compiler {
                 self.put_element(&mut elements, &familiar.key, None, span);
             }
             let Some(record) = reader.next() else { break };
-            let record = match record {
-                Ok(r) => r,
-                Err(d) => {
-                    d.report(self);
-                    // Which elements it has is not known.
-                    self.lost.elements.insert(s);
-                    continue;
-                }
+            let Ok(record) = record.map_err(|d| d.report(self)) else {
+                // Which elements it has is not known.
+                self.lost.elements.insert(s);
+                continue;
             };
             let spelled_out = set_prefix(record.key);
             let parts = spelled_out.as_deref().unwrap_or(record.key);
@@ -443,12 +439,8 @@ impl Compiler {
                 }
             }
             let Some(record) = reader.next() else { break };
-            let record = match record {
-                Ok(r) => r,
-                Err(d) => {
-                    d.report(self);
-                    continue;
-                }
+            let Ok(record) = record.map_err(|d| d.report(self)) else {
+                continue;
             };
             let Ok(v) = self.number_of(&record, s, map) else {
                 continue;
@@ -613,12 +605,8 @@ impl Compiler {
         let reader = DataReader::new(text, body.lo, DataKind::Values, undf);
         let mut reader = reader.with_constants(self);
         while let Some(record) = reader.next() {
-            let record = match record {
-                Ok(r) => r,
-                Err(d) => {
-                    d.report(self);
-                    break;
-                }
+            let Ok(record) = record.map_err(|d| d.report(self)) else {
+                break;
             };
             let Tail::Number(v, _) = record.value else {
                 Diagnostic::error("E0345", record.span)

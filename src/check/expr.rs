@@ -248,10 +248,10 @@ impl Compiler {
         if !n.member {
             return Ok(());
         }
-        let help = match self.always_member(n) {
-            Some(set) => format!("`ord({set})` is the position of the element, `{set}.val` its label as a number"),
-            None => "`1$(…)` makes a number of it; with another membership, `+` is union, `*` intersection, `-` difference".into(),
-        };
+        let help = self.always_member(n).map_or_else(
+            || "`1$(…)` makes a number of it; with another membership, `+` is union, `*` intersection, `-` difference".into(),
+            |set| number_of_element(&set),
+        );
         Diagnostic::error("E0375", n.span)
             .says("a membership stands where a number is expected")
             .label("in the set or not: no number")
@@ -279,9 +279,7 @@ impl Compiler {
             Diagnostic::warning("E0378", n.span)
                 .says(message)
                 .label("always 1")
-                .help(format!(
-                    "`ord({set})` is the position of the element, `{set}.val` its label as a number"
-                ))
+                .help(number_of_element(&set))
                 .report(self);
         }
     }
@@ -837,6 +835,11 @@ impl Compiler {
         };
         self.unknown(name, d)
     }
+}
+
+/// How a number is made of an element.
+fn number_of_element(set: &str) -> String {
+    format!("`ord({set})` is the position of the element, `{set}.val` its label as a number")
 }
 
 /// A name and nothing else.

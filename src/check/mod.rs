@@ -304,32 +304,29 @@ impl Compiler {
             !s.text.is_empty() && n.has_data && n.domain.iter().all(anywhere)
         });
         let next = next.map(|n| n.name.clone());
-        let d = match s.kind {
-            SymbolKind::Variable(_) | SymbolKind::Equation(_) => Diagnostic::error("E0319", span)
-                .says(format!("the {kind} `{name}` has no values yet"))
+        let d = Diagnostic::error("E0319", span);
+        let d = if solved_for {
+            d.says(format!("the {kind} `{name}` has no values yet"))
                 .label(follow::NOTHING_SOLVED)
                 .other(declared, "declared here")
                 .help(format!(
                     "solve a model with `{name}` first, or assign `{name}.l`"
-                )),
-            _ => Diagnostic::error("E0319", span)
-                .says(format!(
-                    "the {kind} `{name}` has no {}",
-                    if kind == "set" { "elements" } else { "values" }
                 ))
+        } else {
+            let what = if kind == "set" { "elements" } else { "values" };
+            let help = match (&s.kind, next) {
+                (SymbolKind::Set { .. }, _) => {
+                    format!("give it elements: `{name} / a, b /`, or `{name}(…) = yes;`")
+                }
+                (_, Some(next)) => format!(
+                    "the data stand behind `{next}`: a comma ends a text without quotes; quote the text"
+                ),
+                (_, None) => format!("give it data: `{name} / … /`, or assign it before"),
+            };
+            d.says(format!("the {kind} `{name}` has no {what}"))
                 .label("never assigned above")
                 .other(declared, "declared without data here")
-                .help(match s.kind {
-                    SymbolKind::Set { .. } => {
-                        format!("give it elements: `{name} / a, b /`, or `{name}(…) = yes;`")
-                    }
-                    _ => match next {
-                        Some(next) => format!(
-                            "the data stand behind `{next}`: a comma ends a text without quotes; quote the text"
-                        ),
-                        None => format!("give it data: `{name} / … /`, or assign it before"),
-                    },
-                }),
+                .help(help)
         };
         d.report(self);
         // One such message per symbol.

@@ -36,13 +36,16 @@ pub(super) fn lsp() -> u8 {
 /// Files on disk, beside those that are open.
 struct Disk;
 
+/// The file of this name beside the one that asks for it, or in the current folder.
+fn on_disk(path: &str, from: Option<&Path>) -> Option<PathBuf> {
+    let beside = from.and_then(Path::parent).map(|f| f.join(path));
+    let mut places = [beside, Some(path.into())].into_iter().flatten();
+    places.find(|p| p.is_file())
+}
+
 impl Files for Disk {
     fn read(&self, path: &str, from: Option<&Path>) -> Found<Vec<u8>> {
-        let beside = from.and_then(Path::parent).map(|f| f.join(path));
-        let mut found = [beside, Some(path.into())].into_iter().flatten();
-        let Some(file) = found.find(|p| p.is_file()) else {
-            return Err(HostError::NotFound);
-        };
+        let file = on_disk(path, from).ok_or(HostError::NotFound)?;
         if file.metadata().map_err(system::other)?.len() > LARGEST {
             return Err(HostError::Other("it is too large for an editor".into()));
         }
@@ -51,11 +54,7 @@ impl Files for Disk {
     }
 
     fn exists(&self, path: &str, from: Option<&Path>) -> bool {
-        let beside = from.and_then(Path::parent).map(|f| f.join(path));
-        [beside, Some(path.into())]
-            .into_iter()
-            .flatten()
-            .any(|p| p.is_file())
+        on_disk(path, from).is_some()
     }
 }
 
@@ -258,15 +257,8 @@ impl Server<'_> {
     fn safely<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> Option<T> {
         let done = catch_unwind(AssertUnwindSafe(|| work(self)));
         if done.is_err() {
-            let texts: Vec<(String, String)> = {
-                let files: Vec<String> = self.editor.files().map(str::to_owned).collect();
-                let text = |f: String| Some((self.editor.text(&f)?.to_owned(), f));
-                files
-                    .into_iter()
-                    .filter_map(text)
-                    .map(|(t, f)| (f, t))
-                    .collect()
-            };
+            let text = |f: &str| Some((f.to_owned(), self.editor.text(f)?.to_owned()));
+            let texts: Vec<(String, String)> = self.editor.files().filter_map(text).collect();
             self.editor = Editor::new(Some(Box::new(Disk)));
             for (file, text) in texts {
                 self.editor.open(&file, text);

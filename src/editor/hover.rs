@@ -128,12 +128,8 @@ pub(super) fn symbol(p: &Program, s: &Symbol) -> String {
                 0 if s.assigned => out.push_str("assigned when the model runs"),
                 0 => out.push_str("no elements"),
                 n => {
-                    let _ = write!(
-                        out,
-                        "{n} element{}: {}",
-                        if n == 1 { "" } else { "s" },
-                        records(p, data(), false)
-                    );
+                    let s = if n == 1 { "" } else { "s" };
+                    let _ = write!(out, "{n} element{s}: {}", records(p, data(), false));
                 }
             }
         }
@@ -152,17 +148,16 @@ pub(super) fn symbol(p: &Program, s: &Symbol) -> String {
             }
         },
         SymbolKind::Variable(_) => {
-            let parts: Vec<String> = [
+            let part = |(name, a)| {
+                let t = p.store.table(s.table + a);
+                (!t.is_empty()).then(|| format!(".{name}: {}", records(p, t, true)))
+            };
+            let all = [
                 ("lo", attribute::LO),
                 ("up", attribute::UP),
                 ("l", attribute::L),
-            ]
-            .into_iter()
-            .filter_map(|(name, a)| {
-                let t = p.store.table(s.table + a);
-                (!t.is_empty()).then(|| format!(".{name}: {}", records(p, t, true)))
-            })
-            .collect();
+            ];
+            let parts: Vec<String> = all.into_iter().filter_map(part).collect();
             out.push_str(&parts.join("\n\n"));
         }
         SymbolKind::Equation(None) => out.push_str("not defined yet"),
@@ -337,8 +332,9 @@ pub(super) fn call_around(d: &Document, at: usize) -> Option<(usize, usize)> {
             Role::Open => {
                 let before = n.checked_sub(1)?;
                 return match tokens[before].role {
-                    Role::Name | Role::Declared | Role::Defined => Some((before, commas)),
-                    Role::Keyword => Some((before, commas)),
+                    Role::Name | Role::Declared | Role::Defined | Role::Keyword => {
+                        Some((before, commas))
+                    }
                     // `x.l(` : the symbol.
                     Role::Attribute => before.checked_sub(2).map(|n| (n, commas)),
                     _ => None,

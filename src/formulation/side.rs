@@ -192,6 +192,7 @@ pub fn slackness(symbols: &Symbols, store: &Store, primal: &Primal, flipped: boo
     // A column's reduced cost is what its row in the dual leaves.
     let (gone, mut cost) = costs(p);
     if let Shape::ConvexQuadratic { objective: f, .. } = shape(p) {
+        cost.clone_from(&f.gradient);
         let hessian = f.hessian.iter();
         hessian.for_each(|&(i, j, v)| cost[i] += v * a.level[j]);
     }

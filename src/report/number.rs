@@ -169,7 +169,7 @@ fn exponential(x: f64, width: usize) -> Option<String> {
     let (_, e) = parts(x, 0);
     let taken = i64::from(x < 0.0) + 4 + e.abs().to_string().len() as i64;
     let most = (width as i64).min(width as i64 - taken + 1);
-    let texts = (-2..=most).rev().map(|digits| {
+    let mut texts = (-2..=most).rev().map(|digits| {
         let (mantissa, e) = parts(x, digits);
         let sign = match e {
             e if e < 0 => "-",
@@ -178,19 +178,19 @@ fn exponential(x: f64, width: usize) -> Option<String> {
         };
         format!("{mantissa}E{sign}{}", e.abs())
     });
-    texts.into_iter().find(|t| t.len() <= width)
+    texts.find(|t| t.len() <= width)
 }
 
 /// ` 1.23E+05`: a place for the sign, two digits of exponent, no more decimals than asked for.
 fn scientific(x: f64, width: usize, decimals: usize) -> Option<String> {
     let most = decimals.min(SCIENTIFIC) as i64;
-    let texts = (-1..=most).rev().map(|digits| {
+    let mut texts = (-1..=most).rev().map(|digits| {
         let (mantissa, e) = parts(x, digits);
         let sign = if e < 0 { '-' } else { '+' };
         let blank = if mantissa.starts_with('-') { "" } else { " " };
         format!("{blank}{mantissa}E{sign}{:02}", e.abs())
     });
-    texts.into_iter().find(|t| t.len() <= width)
+    texts.find(|t| t.len() <= width)
 }
 
 /// All digits that fit, at most seventeen.

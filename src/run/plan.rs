@@ -163,10 +163,10 @@ impl Plan {
 fn cost(branches: &[Branch]) -> f64 {
     match branches {
         [one] if !one.projects => one.work,
-        _ => branches
-            .iter()
-            .map(|b| BRANCHING + GATHERING * b.work)
-            .sum(),
+        _ => {
+            let each = branches.iter();
+            each.map(|b| BRANCHING + GATHERING * b.work).sum()
+        }
     }
 }
 
@@ -526,21 +526,12 @@ impl Machine<'_> {
             let mut all = list.iter().flatten();
             list.len() > 1 || all.any(|c| slots_of_key(&c.key).iter().any(|&s| is_inner(s, d)))
         };
+        let levels = (asked.as_slice(), wanted.inside);
+        let changing = wanted.stored.map(|s| s.0);
         let make = |list: &[Vec<Candidate>]| -> Vec<Branch> {
             let filters = if gathers(list) { &early } else { &filters };
-            let branches = list.iter();
-            branches
-                .map(|c| {
-                    self.branch(
-                        d,
-                        filters,
-                        c,
-                        (&asked, wanted.inside),
-                        pick,
-                        wanted.stored.map(|s| s.0),
-                    )
-                })
-                .collect()
+            let branch = |c: &Vec<Candidate>| self.branch(d, filters, c, levels, pick, changing);
+            list.iter().map(branch).collect()
         };
         let mut premises = analysis.premises;
         let mut tables: Vec<TableId> = d.members.iter().map(|m| m.table).collect();
@@ -550,11 +541,8 @@ impl Machine<'_> {
         tables.retain(|&t| t != SAME);
         tables.sort_unstable();
         tables.dedup();
-        premises.extend(
-            tables
-                .iter()
-                .map(|&t| Premise::Size(t, self.store.table(t).len())),
-        );
+        let size = |&t: &TableId| Premise::Size(t, self.store.table(t).len());
+        premises.extend(tables.iter().map(size));
         let mut made = make(&branches);
         open.sort_by_key(|(forced, _)| !forced);
         for (forced, alternatives) in open {
@@ -706,36 +694,19 @@ impl Machine<'_> {
         let Some((step, rest)) = steps.split_first() else {
             return f(frame);
         };
-        match step {
+        let holds = match step {
             Step::Filter(list, changed) => {
-                let conditions = list.iter().map(|&i| &d.conditions[i]);
-                let holds = if changed.is_empty() {
-                    self.all_hold(conditions, frame)
-                } else {
-                    let before: Vec<Label> = changed.iter().map(|&s| frame[s as usize]).collect();
-                    let holds = self.all_hold(conditions, frame);
-                    for (&s, l) in changed.iter().zip(before) {
-                        frame[s as usize] = l;
-                    }
-                    holds
-                };
-                if !holds {
-                    return true;
+                let before: Vec<Label> = changed.iter().map(|&s| frame[s as usize]).collect();
+                let holds = self.all_hold(list.iter().map(|&i| &d.conditions[i]), frame);
+                for (&s, l) in changed.iter().zip(before) {
+                    frame[s as usize] = l;
                 }
-                self.run_steps(d, rest, frame, f)
+                holds
             }
-            Step::Member(t, key) => {
-                if !self.is_member(*t, key, frame) {
-                    return true;
-                }
-                self.run_steps(d, rest, frame, f)
-            }
+            Step::Member(t, key) => self.is_member(*t, key, frame),
             Step::Any(alternatives) => {
                 let mut there = |(r, mask): &(Driver, u32)| self.has_record(r, *mask, frame);
-                if !alternatives.iter().any(|all| all.iter().all(&mut there)) {
-                    return true;
-                }
-                self.run_steps(d, rest, frame, f)
+                alternatives.iter().any(|all| all.iter().all(&mut there))
             }
             Step::Scan {
                 table,
@@ -750,13 +721,9 @@ impl Machine<'_> {
                 let rows = if *mask == 0 {
                     t.all()
                 } else {
-                    let mut k = [0; 20];
-                    for (p, part) in key.iter().enumerate().filter(|(p, _)| mask >> p & 1 == 1) {
-                        match self.part(part, frame) {
-                            Some(l) => k[p] = l,
-                            None => return true,
-                        }
-                    }
+                    let Some(k) = self.labels_at(key, *mask, frame) else {
+                        return true;
+                    };
                     order = t.order(*mask);
                     t.group(&order, &k[..key.len()])
                 };
@@ -787,9 +754,20 @@ impl Machine<'_> {
                         return false;
                     }
                 }
-                true
+                return true;
             }
+        };
+        !holds || self.run_steps(d, rest, frame, f)
+    }
+
+    /// The labels of a key at the positions of a mask.
+    #[inline]
+    fn labels_at(&self, key: &[Part], mask: u32, frame: &mut Vec<Label>) -> Option<[Label; 20]> {
+        let mut k = [0; 20];
+        for (p, part) in key.iter().enumerate().filter(|(p, _)| mask >> p & 1 == 1) {
+            k[p] = self.part(part, frame)?;
         }
+        Some(k)
     }
 
     /// Whether there is a record with the labels at the positions of a mask.
@@ -798,13 +776,9 @@ impl Machine<'_> {
         if mask.count_ones() as usize == parts.len() {
             return self.is_member(r.table, &r.key, frame);
         }
-        let mut k = [0; 20];
-        for (p, part) in parts.iter().enumerate().filter(|(p, _)| mask >> p & 1 == 1) {
-            match self.part(part, frame) {
-                Some(l) => k[p] = l,
-                None => return false,
-            }
-        }
+        let Some(k) = self.labels_at(parts, mask, frame) else {
+            return false;
+        };
         let t = self.store.table(r.table);
         !t.group(&t.order(mask), &k[..parts.len()]).is_empty()
     }

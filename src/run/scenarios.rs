@@ -9,7 +9,7 @@
 
 use super::{Flow, Frame, Machine};
 use crate::check::node::{SolveCode, SymbolId, TableId};
-use crate::check::symbols::{SymbolKind, attribute};
+use crate::check::symbols::{Symbol, SymbolKind, attribute};
 use crate::data::table::Table;
 use crate::data::universe::Label;
 use crate::data::value::EPS;
@@ -48,7 +48,18 @@ impl Machine<'_> {
         self.store.tables.iter_mut().for_each(Table::tidy);
         let plan = match self.scenario_plan(dict) {
             Ok(plan) => plan,
-            Err(why) => return self.no_plan(why, span),
+            Err(why) => {
+                let help =
+                    "its records look like `s.scenario.''`, `demand.param.demands`, `x.level.xs`";
+                Diagnostic::execution("E0424", span)
+                    .says(format!(
+                        "the dictionary of the scenarios cannot be used: {why}"
+                    ))
+                    .label("not solved")
+                    .help(help)
+                    .note(self);
+                return Flow::Stop;
+            }
         };
         let skip = self.scenario_option(&plan, "skipbasecase") != 0.0;
         let update = self.scenario_option(&plan, "updatetype");
@@ -104,15 +115,9 @@ impl Machine<'_> {
             }
             for name in REPORTED {
                 if let (Some(report), Some(label)) = (&mut report, self.store.universe.get(name)) {
-                    let v = self
-                        .models
-                        .get(&s.model)
-                        .and_then(|m| m.get(name))
-                        .unwrap_or(0.0);
-                    report.set(
-                        &[scenario, &[label]].concat(),
-                        if v == 0.0 { EPS } else { v },
-                    );
+                    let v = self.models.get(&s.model).and_then(|m| m.get(name));
+                    let v = v.filter(|v| *v != 0.0).unwrap_or(EPS);
+                    report.set(&[scenario, &[label]].concat(), v);
                 }
             }
         }
@@ -125,17 +130,6 @@ impl Machine<'_> {
             *self.store.table_mut(to) = table;
         }
         Flow::Next
-    }
-
-    fn no_plan(&self, why: String, span: Span) -> Flow {
-        Diagnostic::execution("E0424", span)
-            .says(format!(
-                "the dictionary of the scenarios cannot be used: {why}"
-            ))
-            .label("not solved")
-            .help("its records look like `s.scenario.''`, `demand.param.demands`, `x.level.xs`")
-            .note(self);
-        Flow::Stop
     }
 
     fn scenario_option(&self, plan: &Plan, name: &str) -> f64 {
@@ -168,10 +162,8 @@ impl Machine<'_> {
             }
             if role == "opt" {
                 plan.options = Some(first.table);
-                plan.report = find(key[2])
-                    .ok()
-                    .filter(|s| s.dim() == depth + 1)
-                    .map(|s| s.table);
+                let report = find(key[2]).ok().filter(|s| s.dim() == depth + 1);
+                plan.report = report.map(|s| s.table);
                 continue;
             }
             let other = find(key[2])?;
@@ -184,18 +176,14 @@ impl Machine<'_> {
                 "marginal" => (false, &[attribute::M]),
                 _ => return Err(format!("there is no role `{role}`")),
             };
-            let parameter =
-                |s: &crate::check::symbols::Symbol| matches!(s.kind, SymbolKind::Parameter { .. });
-            let fits = if role == "param" {
-                parameter(first)
-            } else {
-                first.has_attributes()
+            let parameter = |s: &Symbol| matches!(s.kind, SymbolKind::Parameter { .. });
+            let fits = match role.as_str() {
+                "param" => parameter(first),
+                _ => first.has_attributes(),
             };
             if !fits || !parameter(other) || other.dim() != first.dim() + depth {
-                return Err(format!(
-                    "`{}.{role}.{}` does not fit",
-                    first.name, other.name
-                ));
+                let (first, other) = (&first.name, &other.name);
+                return Err(format!("`{first}.{role}.{other}` does not fit"));
             }
             let tables = offsets.iter().map(|o| first.table + o);
             match input {

@@ -264,10 +264,9 @@ impl<'a> DataReader<'a> {
         self.at = hi;
         let mut fields = Fields::new(self.text, lo, hi).peekable();
         fields.peek()?;
-        let arity = if self.arity == usize::MAX {
-            1
-        } else {
-            self.arity
+        let arity = match self.arity {
+            usize::MAX => 1,
+            known => known,
         };
         for _ in 0..arity {
             let Some((from, to)) = fields.next() else {
@@ -531,12 +530,8 @@ impl<'a> DataReader<'a> {
     fn group(&mut self, depth: usize) -> Outcome<KeyPart<'a>> {
         let open = self.at;
         if depth >= DEEPEST {
-            return Err(self.error(
-                "E0244",
-                open,
-                open + 1,
-                "groups of labels are nested too deeply",
-            ));
+            let message = "groups of labels are nested too deeply";
+            return Err(self.error("E0244", open, open + 1, message));
         }
         self.at += 1;
         let mut list = Vec::new();
@@ -576,12 +571,8 @@ impl<'a> DataReader<'a> {
                     list.push(key);
                 }
                 None => {
-                    return Err(self.error(
-                        "E0241",
-                        open,
-                        open + 1,
-                        "this group of labels is not closed by `)`",
-                    ));
+                    let message = "this group of labels is not closed by `)`";
+                    return Err(self.error("E0241", open, open + 1, message));
                 }
             }
         }
@@ -650,12 +641,10 @@ impl<'a> DataReader<'a> {
                         let text = Cow::Borrowed(&self.text[from + 1..from + 1 + n]);
                         Ok(Tail::Text(text, self.span(from, self.at)))
                     }
-                    _ => Err(self.error(
-                        "E0242",
-                        from,
-                        from + 1,
-                        "this quote is not closed on its line",
-                    )),
+                    _ => {
+                        let message = "this quote is not closed on its line";
+                        Err(self.error("E0242", from, from + 1, message))
+                    }
                 }
             }
             Some(_) => {
@@ -731,11 +720,8 @@ impl<'a> DataReader<'a> {
                     .refuse();
             }
             self.at = end;
-            let digits = &self.text[i..end];
-            return Ok(Tail::Number(
-                ordinary(x, minus, digits),
-                self.span(start, end),
-            ));
+            let x = ordinary(x, minus, &self.text[i..end]);
+            return Ok(Tail::Number(x, self.span(start, end)));
         }
         let word_start = i;
         self.at = i;

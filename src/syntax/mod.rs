@@ -308,18 +308,13 @@ impl<'h> Parser<'h> {
                 )));
             }
         };
-        match built {
-            Ok(kind) => {
-                let stmt = Stmt {
-                    kind,
-                    span: raw.span,
-                    modes,
-                };
-                self.suspicious_texts(&stmt);
-                Ok(stmt)
-            }
-            Err(d) => Err(Box::new(Explanation::of(*d))),
-        }
+        let stmt = Stmt {
+            kind: built.map_err(|d| Box::new(Explanation::of(*d)))?,
+            span: raw.span,
+            modes,
+        };
+        self.suspicious_texts(&stmt);
+        Ok(stmt)
     }
 
     /// The statement that could not be read, after errors that leave nothing of it.

@@ -232,15 +232,10 @@ impl Splitter {
                 Declare::Table => self.end_table(bytes, bytes.len()),
                 _ => {}
             }
-        } else if let Some(open) = self
-            .opens
-            .iter()
-            .rev()
-            .find(|o| o.block)
-            .or(self.opens.last())
-            .copied()
-        {
-            self.unclosed(open);
+        } else {
+            let block = self.opens.iter().rev().find(|o| o.block);
+            let open = block.or(self.opens.last()).copied();
+            open.into_iter().for_each(|open| self.unclosed(open));
         }
     }
 
@@ -552,15 +547,8 @@ fn closes(rest: &str) -> Option<usize> {
         }
         if depth == 0 {
             let behind = &rest[n + 1..];
-            let blanks = behind.len() - behind.trim_start().len();
-            return Some(
-                n + 1
-                    + if behind.trim_start().starts_with(';') {
-                        blanks + 1
-                    } else {
-                        0
-                    },
-            );
+            let left = behind.trim_start().strip_prefix(';').unwrap_or(behind);
+            return Some(rest.len() - left.len());
         }
     }
     None

@@ -338,10 +338,7 @@ pub fn unload(
     span: Span,
 ) -> Outcome<Files> {
     let kind = format_of(file);
-    let everything = match items.is_empty() {
-        true => everything(symbols, kind, span),
-        false => Vec::new(),
-    };
+    let everything = everything(symbols, kind, span);
     let items = if items.is_empty() { &everything } else { items };
     let file = full_name(file);
     write::tidy(symbols, store, items);

@@ -110,11 +110,10 @@ impl<'a> Loading<'a> {
         }
         match self.members.get(&root) {
             Some(m) => m.contains(&l),
-            None => self
-                .store
-                .table(self.symbols.get(root).table)
-                .find(&[l])
-                .is_some(),
+            None => {
+                let table = self.store.table(self.symbols.get(root).table);
+                table.find(&[l]).is_some()
+            }
         }
     }
 
@@ -147,33 +146,25 @@ impl<'a> Loading<'a> {
                 n => format!(" (and {} more)", n - 1),
             };
             let table = self.store.table(set_symbol.table);
-            let near = nearest(
-                self.name(first),
-                (0..table.len().min(10_000) as u32)
-                    .map(|row| self.store.universe.name(table.key(row)[0])),
-            )
-            .map(str::to_string);
-            let d = Diagnostic::execution("E0479", w.span)
+            let labels = (0..table.len().min(10_000) as u32).map(|row| table.key(row)[0]);
+            let (name, set) = (self.name(first), &set_symbol.name);
+            let near = nearest(name, labels.map(|l| self.store.universe.name(l)));
+            let near = near.map(str::to_string);
+            return Diagnostic::execution("E0479", w.span)
                 .says(format!(
-                    "{file}:{place}: `{}` is not a member of the set `{}`{others}",
-                    self.name(first),
-                    set_symbol.name
+                    "{file}:{place}: `{name}` is not a member of the set `{set}`{others}"
                 ))
                 .label(format!(
-                    "position {} of `{}` runs over `{}`",
+                    "position {} of `{}` runs over `{set}`",
                     p + 1,
-                    symbol.name,
-                    set_symbol.name
+                    symbol.name
                 ))
-                .other(
-                    set_symbol.declared,
-                    format!("`{}` is declared here", set_symbol.name),
-                );
-            let add = format!(
-                "add the label to `{}`, or correct the file",
-                set_symbol.name
-            );
-            return d.did_you_mean(near, add).refuse();
+                .other(set_symbol.declared, format!("`{set}` is declared here"))
+                .did_you_mean(
+                    near,
+                    format!("add the label to `{set}`, or correct the file"),
+                )
+                .refuse();
         }
         Ok(())
     }
@@ -198,10 +189,9 @@ impl<'a> Loading<'a> {
         for pair in order.windows(2) {
             if key(pair[0]) == key(pair[1]) {
                 let labels: Vec<&str> = key(pair[0]).iter().map(|&l| self.name(l)).collect();
-                let what = if dim == 0 {
-                    "the value".to_string()
-                } else {
-                    format!("the record `{}`", labels.join("."))
+                let what = match dim {
+                    0 => "the value".to_string(),
+                    _ => format!("the record `{}`", labels.join(".")),
                 };
                 return Diagnostic::execution("E0478", w.span)
                     .says(format!(
@@ -218,10 +208,10 @@ impl<'a> Loading<'a> {
         if let SymbolKind::Set { singleton: true } = symbol.kind
             && count > 1
         {
+            let name = &w.name;
             return Diagnostic::execution("E0478", w.span)
                 .says(format!(
-                    "`{}` is a singleton; the file has {count} elements for it",
-                    w.name
+                    "`{name}` is a singleton; the file has {count} elements for it"
                 ))
                 .label("nothing was loaded")
                 .refuse();

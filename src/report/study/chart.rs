@@ -36,10 +36,9 @@ impl Axis {
     fn new(values: &[f64], pixels: [f64; 2], count: usize) -> Self {
         let low = values.iter().copied().fold(f64::INFINITY, f64::min);
         let high = values.iter().copied().fold(0.0, f64::max);
-        let (low, high) = if low <= high {
-            (low, high)
-        } else {
-            (0.1, 10.0)
+        let (low, high) = match low <= high {
+            true => (low, high),
+            false => (0.1, 10.0),
         };
         let ends = [low / 1.5, high * 1.5];
         let decades = (ends[1] / ends[0]).log10();
@@ -80,7 +79,7 @@ impl Labels {
     /// Writes a label beside a point, where it covers least of what is there.
     fn add(&mut self, [x, y]: [f64; 2], text: &str, size: f64, color: &str, weight: &str) {
         let width = 0.56 * size * text.chars().count() as f64;
-        let mut best: Option<(f64, [f64; 2])> = None;
+        let mut best: Option<(f64, [f64; 2], Rectangle)> = None;
         for distance in [0.0, 12.0, 24.0, 40.0] {
             let (dx, dy) = (7.0 + distance, 8.0 + distance);
             let middle = y + 0.35 * size;
@@ -100,13 +99,12 @@ impl Labels {
                 let covered: f64 = self.taken.iter().map(|t| overlap(t, &mine)).sum();
                 let cost = 4.0 * outside + covered + 0.2 * distance;
                 if best.is_none_or(|b| cost < b.0 - 1e-9) {
-                    best = Some((cost, at));
+                    best = Some((cost, at, mine));
                 }
             }
         }
-        let Some((_, at)) = best else { return };
-        self.taken
-            .push([at[0], at[1] - 0.8 * size, at[0] + width, at[1] + 0.2 * size]);
+        let Some((_, at, mine)) = best else { return };
+        self.taken.push(mine);
         if (at[0] - x).abs().max((at[1] - y).abs()) > 30.0 + width {
             let _ = writeln!(
                 self.out,
@@ -152,11 +150,9 @@ pub fn svg(title: &str, s: &Study) -> String {
         .zip(&errors)
         .map(|(&t, &e)| [x.at(t), y.at(e)])
         .collect();
+    let around = |p: &[f64; 2]| [p[0] - 4.0, p[1] - 4.0, p[0] + 4.0, p[1] + 4.0];
     let mut labels = Labels {
-        taken: points
-            .iter()
-            .map(|p| [p[0] - 4.0, p[1] - 4.0, p[0] + 4.0, p[1] + 4.0])
-            .collect(),
+        taken: points.iter().map(around).collect(),
         out: String::new(),
     };
     let mut families: Vec<&str> = Vec::new();

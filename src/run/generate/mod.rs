@@ -178,12 +178,9 @@ impl Machine<'_> {
             b.column(z, &[]);
         }
         let mut row_blocks = Blocks::default();
-        let mut k = 0;
-        while k < solve.equations.len() {
+        for item in &solve.equations {
             // One equation may stand several times, paired with different variables.
-            let e = &equations[solve.equations[k].definition];
-            b.block(e, &solve.equations[k], &mut row_blocks, frame);
-            k += 1;
+            b.block(&equations[item.definition], item, &mut row_blocks, frame);
             if b.failed || b.m.stopped() {
                 return None;
             }
@@ -234,21 +231,11 @@ impl Builder<'_, '_> {
             self.failed = true;
             return;
         }
-        let plain = e.key.is_plain() && {
-            let slots: Vec<Slot> = e
-                .key
-                .parts
-                .iter()
-                .filter_map(|p| {
-                    if let Part::Slot(s) = p {
-                        Some(*s)
-                    } else {
-                        None
-                    }
-                })
-                .collect();
-            slots == e.domain.slots
-        };
+        let slots = e.key.parts.iter().filter_map(|p| match p {
+            Part::Slot(s) => Some(s),
+            _ => None,
+        });
+        let plain = e.key.is_plain() && slots.eq(&e.domain.slots);
         let tuples = if plain || d == 0 {
             tuples
         } else {

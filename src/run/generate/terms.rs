@@ -370,10 +370,9 @@ impl Builder<'_, '_> {
                 multiply_n(count, tape);
             }
             AggregateOp::Smin | AggregateOp::Smax => {
-                let (f, none) = if op == AggregateOp::Smin {
-                    (Function::Min, f64::INFINITY)
-                } else {
-                    (Function::Max, f64::NEG_INFINITY)
+                let (f, none) = match op {
+                    AggregateOp::Smin => (Function::Min, f64::INFINITY),
+                    _ => (Function::Max, f64::NEG_INFINITY),
                 };
                 match count {
                     0 => tape.number(none),
@@ -382,10 +381,9 @@ impl Builder<'_, '_> {
                 }
             }
             AggregateOp::Sand | AggregateOp::Sor => {
-                let (f, none) = if op == AggregateOp::Sand {
-                    (Function::BoolAnd, 1.0)
-                } else {
-                    (Function::BoolOr, 0.0)
+                let (f, none) = match op {
+                    AggregateOp::Sand => (Function::BoolAnd, 1.0),
+                    _ => (Function::BoolOr, 0.0),
                 };
                 if count == 0 {
                     tape.number(none);

@@ -54,8 +54,7 @@ impl Splitter {
                     }
                     _ => {}
                 }
-                self.pos = quoted_end(bytes, i).unwrap_or(i + 1);
-                self.last_end = self.pos;
+                self.read_to(quoted_end(bytes, i).unwrap_or(i + 1));
                 continue;
             }
             match b {
@@ -66,21 +65,13 @@ impl Splitter {
                 }
                 b',' => {
                     if self.declare == Declare::Name {
-                        self.stray(
-                            i,
-                            i + 1,
-                            "a name was expected here, not `,`",
-                            "one comma stands between two names",
-                        );
+                        let message = "a name was expected here, not `,`";
+                        self.stray(i, i + 1, message, "one comma stands between two names");
                     }
                     self.declare = Declare::Name;
-                    self.pos += 1;
-                    self.last_end = self.pos;
+                    self.read_to(i + 1);
                 }
-                b'/' if self.class == Class::Acronym => {
-                    self.pos += 1;
-                    self.last_end = self.pos;
-                }
+                b'/' if self.class == Class::Acronym => self.read_to(i + 1),
                 b'/' => {
                     if self.class == Class::Table && self.declare != Declare::Name {
                         let help = "leave both out: the labels of the columns stand in the next line, and `;` ends the last row";
@@ -93,8 +84,7 @@ impl Splitter {
                 }
                 b'(' | b'[' | b'{' if self.declare != Declare::Name && !self.has_domain(bytes) => {
                     self.declare = Declare::Domain;
-                    self.pos += 1;
-                    self.last_end = self.pos;
+                    self.read_to(i + 1);
                 }
                 b'\'' | b'"'
                     if self.declare == Declare::Name
@@ -107,8 +97,7 @@ impl Splitter {
                             .says("the name stands before its text")
                             .help("write `set i 'plants' / a, b /;`, `parameter p(i) 'price';`"),
                     );
-                    self.pos = end;
-                    self.last_end = end;
+                    self.read_to(end);
                 }
                 b'{' if self.declare == Declare::AfterText
                     && memchr::memchr(b'}', &bytes[i..]).is_some() =>
@@ -118,14 +107,12 @@ impl Splitter {
                             .says("data stand between two slashes")
                             .help("write `/ a 1, b 2 /`"),
                     );
-                    self.pos = i + memchr::memchr(b'}', &bytes[i..]).map_or(1, |n| n + 1);
-                    self.last_end = self.pos;
+                    self.read_to(i + memchr::memchr(b'}', &bytes[i..]).map_or(1, |n| n + 1));
                 }
                 b'\'' | b'"' if self.declare != Declare::Name => match line_quote(bytes, i) {
                     Some(end) => {
                         self.hole(HoleKind::Text, span(i + 1, end - 1), span(i, end));
-                        self.pos = end;
-                        self.last_end = end;
+                        self.read_to(end);
                         self.declare = Declare::AfterText;
                         self.new_line = false;
                     }
@@ -163,12 +150,8 @@ impl Splitter {
                             self.pos = next;
                             return true;
                         }
-                        self.stray(
-                            i,
-                            end,
-                            "a comma is missing before this name",
-                            "on one line commas stand between names",
-                        );
+                        let message = "a comma is missing before this name";
+                        self.stray(i, end, message, "on one line commas stand between names");
                     }
                     self.name(bytes, i, end);
                 }
@@ -183,19 +166,20 @@ impl Splitter {
                         let end = memchr::memchr(b';', &bytes[i..]).map(|n| i + n);
                         let line =
                             memchr::memchr(b'\n', &bytes[i..]).map_or(bytes.len(), |n| i + n);
-                        self.pos = end.filter(|e| *e < line).unwrap_or(i + 1);
-                        self.last_end = self.pos;
+                        self.read_to(end.filter(|e| *e < line).unwrap_or(i + 1));
                         continue;
                     }
-                    self.pos += 1;
-                    self.last_end = self.pos;
+                    self.read_to(i + 1);
                 }
-                _ => {
-                    self.pos += text[i..].chars().next().map_or(1, char::len_utf8);
-                    self.last_end = self.pos;
-                }
+                _ => self.read_to(i + text[i..].chars().next().map_or(1, char::len_utf8)),
             }
         }
+    }
+
+    /// Goes on at a byte: what stands before it counts.
+    fn read_to(&mut self, at: usize) {
+        self.pos = at;
+        self.last_end = at;
     }
 
     /// Something that does not belong between the parts of a declaration; its names can be read.
@@ -211,12 +195,8 @@ impl Splitter {
     fn trailing_comma(&mut self) {
         if self.declare == Declare::Name && self.names > 0 {
             let comma = self.last_end - 1;
-            self.stray(
-                comma,
-                comma + 1,
-                "a name was expected behind this comma",
-                "leave it out before the `;`",
-            );
+            let message = "a name was expected behind this comma";
+            self.stray(comma, comma + 1, message, "leave it out before the `;`");
         }
     }
 
@@ -224,8 +204,7 @@ impl Splitter {
         self.last_name = i;
         self.names += 1;
         self.declare = Declare::AfterName;
-        self.pos = end;
-        self.last_end = end;
+        self.read_to(end);
         self.new_line = false;
         // `scalar x.l /1/`, `set i-j` and the like are left to the parser, in one piece.
         while let Some(&b) = bytes.get(self.pos) {
@@ -237,8 +216,7 @@ impl Splitter {
             {
                 break;
             }
-            self.pos += 1;
-            self.last_end = self.pos;
+            self.read_to(self.pos + 1);
         }
     }
 
@@ -343,13 +321,11 @@ impl Splitter {
                 {
                     self.problems.push(unclosed_quote(self.body_start + quote));
                 }
-                if self.class == Class::Model {
-                    // The grammar reads a model's list.
-                } else {
+                // The grammar reads a model's list.
+                if self.class != Class::Model {
                     self.hole(HoleKind::Body, body, span(self.body_start - 1, at + 1));
                 }
-                self.pos = at + 1;
-                self.last_end = at + 1;
+                self.read_to(at + 1);
                 self.declare = Declare::AfterText;
                 self.new_line = false;
                 return true;
@@ -412,10 +388,7 @@ impl Splitter {
                 continue;
             }
             if self.class != Class::Set {
-                let rest = text[at + 1..]
-                    .split_once(';')
-                    .map_or(&text[at + 1..], |_| &text[at + 1..]);
-                if separates_records(rest) {
+                if separates_records(&text[at + 1..]) {
                     if self.problems.is_empty() {
                         self.problems.push(
                             Diagnostic::error("E0248", span(at, at + 1))
@@ -615,7 +588,6 @@ fn unclosed_quote(at: usize) -> Diagnostic {
         .help("a text stands between two quotes of one kind: `'text'`, `\"it's\"`")
 }
 
-/// A quote that begins a file's name and does not end it.
 /// The first line that begins a declaration: with its keyword, and a name behind.
 fn next_declaration(text: &str, from: usize, to: usize) -> Option<usize> {
     let bytes = text.as_bytes();
@@ -629,6 +601,7 @@ fn next_declaration(text: &str, from: usize, to: usize) -> Option<usize> {
         })
 }
 
+/// A quote that begins a file's name and does not end it.
 fn lone_quote(name: &str) -> Option<usize> {
     let inside = name.trim();
     let quote = inside.chars().next().filter(|c| matches!(c, '\'' | '"'))?;
