@@ -565,15 +565,14 @@ impl<'h> Machine<'h> {
             None => (NA, NA),
         };
         let infeasible = !r.is_feasible(crate::solve::certificate::TOLERANCE);
-        let count = if infeasible {
-            r.infeasible_count as f64
-        } else {
-            0.0
-        };
-        let sum = if infeasible {
-            r.primal_sum.unwrap_or(0.0)
-        } else {
-            0.0
+        let (count, sum, largest) = match r.unsolved {
+            Some((sum, largest)) => (r.infeasible_count as f64, sum, largest),
+            None if infeasible => (
+                r.infeasible_count as f64,
+                r.primal_sum.unwrap_or(0.0),
+                r.primal.unwrap_or(0.0),
+            ),
+            None => (0.0, 0.0, 0.0),
         };
         let values = [
             ("modelstat", f64::from(a.status as u8)),
@@ -593,14 +592,7 @@ impl<'h> Machine<'h> {
             ("numnlins", g.origin.nonlinear_nonzeros as f64),
             ("numinfes", count),
             ("suminfes", sum),
-            (
-                "maxinfes",
-                if infeasible {
-                    r.primal.unwrap_or(0.0)
-                } else {
-                    0.0
-                },
-            ),
+            ("maxinfes", largest),
             ("meaninfes", if count > 0.0 { sum / count } else { 0.0 }),
             ("numnopt", 0.0),
             ("numredef", 0.0),
