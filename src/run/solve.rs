@@ -545,13 +545,13 @@ impl<'h> Machine<'h> {
             None if discrete => (NA, 0.0),
             None => (NA, NA),
         };
-        let violations = [
-            r.infeasible_count as f64,
-            r.primal_sum.unwrap_or(0.0),
-            r.primal.unwrap_or(0.0),
-        ];
-        let feasible = r.is_feasible(crate::solve::certificate::TOLERANCE);
-        let [count, sum, largest] = if feasible { [0.0; 3] } else { violations };
+        let infeasible = !r.is_feasible(crate::solve::certificate::TOLERANCE);
+        let count = r.infeasible_count as f64;
+        let [count, sum, largest] = match r.unsolved {
+            Some((sum, largest)) => [count, sum, largest],
+            None if infeasible => [count, r.primal_sum.unwrap_or(0.0), r.primal.unwrap_or(0.0)],
+            None => [0.0; 3],
+        };
         let kinds = instance.columns.kind.iter();
         let discrete_columns = kinds
             .filter(|k| !matches!(k, ColumnKind::Continuous | ColumnKind::OrderedSet))

@@ -70,6 +70,8 @@ pub struct Residuals {
     pub natural_relative: f64,
     /// Number of rows and columns that violate the relative tolerance (`.numinfes`).
     pub infeasible_count: usize,
+    /// What the rows of unsolved pairs are off by in a complementarity model: the sum and the largest (`.suminfes`, `.maxinfes`).
+    pub unsolved: Option<(f64, f64)>,
 }
 
 impl Residuals {
@@ -334,6 +336,7 @@ pub fn complementarity(instance: &Instance, x: &[f64], at: &Linearised) -> Resid
     let (mut product, mut sum) = (0.0f64, Sum::default());
     let mut pairs = 0.0f64;
     let mut natural_relative = 0.0f64;
+    let (mut off, mut farthest, mut count) = (Sum::default(), 0.0f64, 0);
     let mut taken = vec![false; instance.row_count()];
     let f = |i: usize| at.activity[i] - instance.rows.rhs[i];
     let mut see = |r: f64| {
@@ -358,6 +361,11 @@ pub fn complementarity(instance: &Instance, x: &[f64], at: &Linearised) -> Resid
         let unit = x.abs().max(1.0);
         see(residual(step * (unit / size)) / unit);
         let bound = if step > 0.0 { l } else { u };
+        if (x - bound).abs() > TOLERANCE * unit && step.abs() > TOLERANCE * size {
+            off.add(step.abs());
+            farthest = farthest.max(step.abs());
+            count += 1;
+        }
         pairs = pairs.max(step.abs() * (x - bound).abs().min(1.0));
         if step != 0.0 && bound.is_finite() {
             let p = (step * (x - bound)).abs();
@@ -369,6 +377,11 @@ pub fn complementarity(instance: &Instance, x: &[f64], at: &Linearised) -> Resid
         let v = row_violation(instance.rows.relation[i], f(i), 0.0);
         row.see(v, i);
         pairs = pairs.max(v);
+        if v > TOLERANCE * at.row_size[i].max(1.0) {
+            off.add(v);
+            farthest = farthest.max(v);
+            count += 1;
+        }
         see(v / at.row_size[i].max(1.0));
     }
     Residuals {
@@ -379,6 +392,8 @@ pub fn complementarity(instance: &Instance, x: &[f64], at: &Linearised) -> Resid
         worst_row: row.place.filter(|_| row.value >= column.value),
         worst_column: column.place.filter(|_| column.value > row.value),
         natural_relative,
+        infeasible_count: count,
+        unsolved: Some((off.value(), farthest)),
         ..Residuals::default()
     }
 }

@@ -342,12 +342,15 @@ pub fn is_feasible_only_by_scaling(
         && (0..row_marginal.len()).map(worth).sum::<f64>() > CONSIDERABLE * objective.abs().max(1.0)
 }
 
+/// What is left of terms that cancel, where x is not quite where they do.
+const CANCELLED: f64 = 0.01;
+
 /// Whether multipliers y of the rows prove that the rows, linearised at x, have no solution within
 /// the bounds: y has the rows' signs, and Σ y_i (b_i − a_i(x)) exceeds every Σ_j (Jᵀy)_j (x'_j − x_j)
 /// (Farkas). For convex rows that is a proof of infeasibility, for others of local infeasibility.
 ///
-/// Components of Jᵀy below `tolerance` relative to the terms they are made of, or to what they could
-/// change in the neighbourhood of x, count as 0.
+/// Components of Jᵀy below `tolerance` relative to the largest term, or to what they could change in the
+/// neighbourhood of x if most of their own terms cancel, count as 0.
 pub fn is_locally_infeasible(
     instance: &Instance,
     evaluator: &mut Evaluator,
@@ -363,9 +366,9 @@ pub fn is_locally_infeasible(
     }
     let (start, column) = evaluator.jacobian_pattern();
     let mut reach = vec![Sum::default(); x.len()];
+    let mut size_of = vec![0.0f64; x.len()];
     let mut margin = Sum::default();
     let largest = y.iter().fold(0.0f64, |s, v| s.max(v.abs()));
-    let mut term = 0.0f64;
     for i in 0..m {
         let wrong = match instance.rows.relation[i] {
             Relation::Equal => 0.0,
@@ -383,9 +386,10 @@ pub fn is_locally_infeasible(
         for k in start[i]..start[i + 1] {
             let j = column[k] as usize;
             reach[j].add_product(value[k], y[i]);
-            term = term.max((value[k] * y[i]).abs());
+            size_of[j] = size_of[j].max((value[k] * y[i]).abs());
         }
     }
+    let term = size_of.iter().fold(0.0f64, |s, v| s.max(*v));
     let mut margin = margin.value();
     let size = margin;
     for (j, r) in reach.iter().enumerate() {
@@ -396,7 +400,8 @@ pub fn is_locally_infeasible(
             instance.columns.lower[j]
         };
         let room = (bound - x[j]).abs();
-        if r.abs() <= tolerance * term || r.abs() * x[j].abs().max(1.0) <= tolerance * size {
+        let near = r.abs() * x[j].abs().max(1.0) <= tolerance * size;
+        if r.abs() <= tolerance * term || near && r.abs() <= CANCELLED * size_of[j] {
             // noise: only as far as the neighbourhood of x
             margin -= (r * room.min(x[j].abs().max(1.0))).abs();
         } else if r != 0.0 {
