@@ -93,7 +93,7 @@ pub(super) fn interior(run: &mut Run, start: &Point) -> Result<Option<Point>, St
     let Some((mut point, mut state)) = inside(run, start, &bounds) else {
         return Ok(None);
     };
-    log::note(run, log::Part::Crash, || {
+    log::note(run, || {
         "Interior crash\n iter    product  equations    residual     step     prox".into()
     });
     let mut best = start.clone();
@@ -144,7 +144,7 @@ pub(super) fn interior(run: &mut Run, start: &Point) -> Result<Option<Point>, St
         run.crash_iterations += 1;
         let t = step.length;
         let residual = best.residual;
-        log::note(run, log::Part::Crash, || {
+        log::note(run, || {
             format!(
                 "{:5} {mu:10.3e} {off:10.3e} {residual:11.4e} {t:8.1e} {prox:8.1e}",
                 iteration
