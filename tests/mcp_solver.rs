@@ -4,7 +4,9 @@
 //! they come from. `F` is differentiated here by central differences where it is not linear.
 
 use crate::walls::obstacle;
-use bmod::solve::mcp::{Data, EvalError, Outcome, Problem, Settings, Status, natural_residual, solve};
+use bmod::solve::mcp::{
+    Data, EvalError, Outcome, Problem, Settings, Status, natural_residual, solve,
+};
 use bmod::solve::{Budget, Limits, Monitor, Quiet};
 use proptest::prelude::*;
 

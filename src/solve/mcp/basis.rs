@@ -11,7 +11,7 @@
 //!   obstacle problems) factors fill up, directions are full vectors anyway, and blocks of dense
 //!   arithmetic are ten times faster.
 
-use feral::{LuParams, SparseColMatrix, SparseLu, SparseLuSymbolic};
+use feral::{LuParams, LuScaling, SparseColMatrix, SparseLu, SparseLuSymbolic};
 
 use super::factor::{Fill, Ordering, faer_lu, faer_solve};
 
@@ -85,7 +85,8 @@ impl Basis {
         // Where factors are sparse, updates are too, and a factorisation costs many of them.
         let limit = (matrix.m / 20).clamp(UPDATE_LIMIT, 20 * UPDATE_LIMIT);
         let params = LuParams {
-            zero_pivot_tol: 1e-13,
+            scaling: LuScaling::InfNorm,
+            zero_pivot_tol: 1e-14,
             max_updates: limit + 1,
             sparse_rhs_max_density: 0.3,
             ..LuParams::default()
@@ -225,14 +226,16 @@ mod tests {
         let m = 120;
         let mut random = Random::new(7);
         let mut columns: Vec<Sparse> = (0..m).map(|j| column(&mut random, m, j)).collect();
-        let mut basis = Basis::new(&matrix(&columns), fill, &mut None).expect("diagonally dominant");
+        let mut basis =
+            Basis::new(&matrix(&columns), fill, &mut None).expect("diagonally dominant");
         for _ in 0..90 {
             let slot = (random.uniform() * m as f64) as usize;
             columns[slot] = column(&mut random, m, slot);
             let mut direction = Sparse::new();
             assert!(basis.solve_sparse(&columns[slot], &mut direction));
             if !basis.replace(slot, &columns[slot], &direction) {
-                basis = Basis::new(&matrix(&columns), fill, &mut None).expect("diagonally dominant");
+                basis =
+                    Basis::new(&matrix(&columns), fill, &mut None).expect("diagonally dominant");
             }
             let a = column(&mut random, m, slot);
             let (mut updated, mut fresh) = (Sparse::new(), vec![0.0; m]);

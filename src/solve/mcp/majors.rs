@@ -306,7 +306,11 @@ impl Majors {
     fn proximal_terms(&self, run: &Run, r: f64) -> Vec<f64> {
         let mut prox = vec![self.prox];
         // Where one linearisation is exact, a small term saves the iterations that remove it again.
-        let small = if run.problem.data.is_linear { 1e-5 } else { 1e-3 };
+        let small = if run.problem.data.is_linear {
+            1e-5
+        } else {
+            1e-3
+        };
         for v in [
             (small * r.min(1.0)).max(10.0 * self.prox).max(PROX_FIRST),
             (0.1 * r.min(1.0)).max(100.0 * self.prox),

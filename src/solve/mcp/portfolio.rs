@@ -162,9 +162,7 @@ fn attempt(run: &mut Run, restarts: &mut usize) -> Result<(), Stop> {
         *restarts += 1;
         let spread = 10f64.powf(random.between(-2.0, 1.0));
         let x = random_point(run, &mut random, spread);
-        log::note(run, || {
-            format!("Restart {} from a random point", k + 1)
-        });
+        log::note(run, || format!("Restart {} from a random point", k + 1));
         let Some(start) = run.point(x) else { continue };
         if run.work() > budget || succeeds(run, Crash::Newton, start)? {
             return Ok(());

@@ -4,8 +4,8 @@
 use feral::SparseColMatrix;
 
 use super::factor::Fill;
-use super::merit::{merit, natural_residual};
 use super::fixed::Reduced;
+use super::merit::{merit, natural_residual};
 use super::{EvalError, INFINITY, Names, Problem, Settings};
 pub(super) use crate::solve::budget::Stop;
 use crate::solve::{Budget, Progress};

@@ -215,7 +215,7 @@ fn run(
         mint,
     ));
     let m = lock(&nlp).size().1;
-    let x = lock(&nlp).start().to_vec();
+    let x = lock(&nlp).start.clone();
     let adapter = Rc::new(RefCell::new(Adapter {
         nlp,
         tell,
@@ -302,10 +302,10 @@ impl TNLP for Adapter {
     fn get_starting_point(&mut self, sp: StartingPoint<'_>) -> bool {
         let nlp = lock(&self.nlp);
         if sp.init_x {
-            sp.x.copy_from_slice(nlp.start());
+            sp.x.copy_from_slice(&nlp.start);
         }
         if sp.init_lambda {
-            match nlp.start_multipliers() {
+            match &nlp.start_multipliers {
                 Some(l) => sp.lambda.copy_from_slice(l),
                 None => sp.lambda.fill(0.0),
             }
