@@ -132,15 +132,11 @@ impl Lpcc<'_> {
         (node.row_lower[row], node.row_upper[row]) = f;
     }
 
-    fn activity(&self, row: usize, x: &[f64]) -> f64 {
-        self.problem.rows.line(row).map(|(j, a)| a * x[j]).sum()
-    }
-
     /// Pair that is farthest from being satisfied, among those without a piece.
     fn worst(&self, x: &[f64], decided: &[bool]) -> Option<usize> {
         let mut worst: Option<(usize, f64)> = None;
         for (k, p) in self.pairs.iter().enumerate().filter(|(k, _)| !decided[*k]) {
-            let f = self.activity(p.row, x) - self.rhs[k];
+            let f = self.problem.activity(p.row, x) - self.rhs[k];
             let v = p.natural(x[p.column], f);
             if v > TOLERANCE && worst.is_none_or(|w| v > w.1) {
                 worst = Some((k, v));
