@@ -169,13 +169,6 @@ pub(super) fn interior(run: &mut Run, start: &Point) -> Result<Option<Point>, St
             prox = (OVER.2 * prox).max(PROX.0);
         }
     }
-    if let Some(last) = run.point(snapped(run, &point.x, &state, &bounds))
-        // Another point that is no solution either is no better to start from.
-        && run.converged(last.residual)
-        && last.residual < best.residual
-    {
-        best = last;
-    }
     Ok((best.residual < start.residual).then_some(best))
 }
 
