@@ -10,7 +10,7 @@ use super::mpec::pairs::Program;
 use super::nlp::relaxation::is_infeasible;
 use super::pairing::{match_rows, refuse};
 use super::{Budget, Claim, Outcome, Settings, SolveError, SolverStatus, Strategy};
-use crate::autodiff::Evaluator;
+use crate::autodiff::{EvalFailure, Evaluator};
 use crate::model::instance::{Instance, Relation};
 use crate::model::problem_type::ProblemType;
 use crate::solve::noise;
@@ -94,18 +94,22 @@ impl<'a> Square<'a> {
     }
 }
 
+impl From<EvalFailure> for mcp::EvalError {
+    fn from(failure: EvalFailure) -> Self {
+        Self {
+            row: Some(failure.row as usize),
+            message: failure.to_string(),
+        }
+    }
+}
+
 impl mcp::Problem for Square<'_> {
     fn data(&self) -> &mcp::Data {
         &self.data
     }
 
     fn function(&mut self, x: &[f64], f: &mut [f64]) -> Result<(), mcp::EvalError> {
-        self.evaluator
-            .rows(x, &mut self.activity)
-            .map_err(|e| mcp::EvalError {
-                row: Some(e.row as usize),
-                message: e.to_string(),
-            })?;
+        self.evaluator.rows(x, &mut self.activity)?;
         for (j, r) in self.row_of.iter().enumerate() {
             f[j] = r.map_or(0.0, |r| {
                 self.activity[r as usize] - self.instance.rows.rhs[r as usize]
@@ -115,12 +119,7 @@ impl mcp::Problem for Square<'_> {
     }
 
     fn jacobian(&mut self, x: &[f64], values: &mut [f64]) -> Result<(), mcp::EvalError> {
-        self.evaluator
-            .jacobian(x, &mut self.jacobian)
-            .map_err(|e| mcp::EvalError {
-                row: Some(e.row as usize),
-                message: e.to_string(),
-            })?;
+        self.evaluator.jacobian(x, &mut self.jacobian)?;
         for (v, &k) in values.iter_mut().zip(&self.from) {
             *v = self.jacobian[k];
         }

@@ -46,10 +46,20 @@ pub struct Solution {
     pub x: Vec<f64>,
     /// Multipliers λ of the constraints, L = f + λᵀg.
     pub lambda: Vec<f64>,
-    /// Objective.
-    pub objective: f64,
     /// Iterations.
     pub iterations: u64,
+}
+
+impl Solution {
+    /// A point without multipliers.
+    pub(super) fn without_multipliers(ended: Ended, x: Vec<f64>, nlp: &Problem) -> Self {
+        Self {
+            ended,
+            x,
+            lambda: vec![0.0; nlp.size().1],
+            iterations: 0,
+        }
+    }
 }
 
 /// Numbers of one iteration.

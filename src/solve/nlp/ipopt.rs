@@ -109,7 +109,6 @@ impl InteriorPoint for Ipopt {
                     ended: ended(r.status),
                     x: copy(r.data.x, n),
                     lambda: copy(r.data.mult_g, m),
-                    objective: r.obj_val,
                     iterations: state.iterations,
                 }
             }

@@ -102,7 +102,6 @@ impl Quadratic {
             },
             x: run.point.x,
             lambda: run.point.y.iter().map(|y| -y).collect(),
-            objective: f64::NAN,
             iterations: run.iterations,
         }
     }

@@ -93,13 +93,8 @@ impl Driver<'_, '_> {
     ) -> Result<Solution, SolveError> {
         if !self.affords_factors() {
             let nlp = lock(&nlp);
-            return Ok(Solution {
-                ended: Ended::TooLarge,
-                x: nlp.start.clone(),
-                lambda: vec![0.0; nlp.size().1],
-                objective: f64::NAN,
-                iterations: 0,
-            });
+            let start = nlp.start.clone();
+            return Ok(Solution::without_multipliers(Ended::TooLarge, start, &nlp));
         }
         let mut options: Vec<(String, String)> = Vec::new();
         let mut put = |k: &str, v: &str| {
