@@ -4,7 +4,9 @@
 //! they come from. `F` is differentiated here by central differences where it is not linear.
 
 use crate::walls::obstacle;
-use bmod::solve::mcp::{EvalError, Outcome, Problem, Settings, Status, natural_residual, solve};
+use bmod::solve::mcp::{
+    Data, EvalError, Outcome, Problem, Settings, Status, natural_residual, solve,
+};
 use bmod::solve::{Budget, Limits, Monitor, Quiet};
 use proptest::prelude::*;
 
@@ -14,11 +16,7 @@ type Function = Box<dyn Fn(&[f64], &mut [f64]) -> Result<(), String>>;
 
 /// A problem with a full Jacobian, or a sparse linear one.
 struct Model {
-    lower: Vec<f64>,
-    upper: Vec<f64>,
-    start: Vec<f64>,
-    col_start: Vec<usize>,
-    rows: Vec<usize>,
+    data: Data,
     /// Values of a constant Jacobian and F(0).
     linear: Option<(Vec<f64>, Vec<f64>)>,
     function: Function,
@@ -41,11 +39,14 @@ impl Model {
         triplets.iter().for_each(|t| col_start[t.1 + 1] += 1);
         (0..n).for_each(|j| col_start[j + 1] += col_start[j]);
         Model {
-            lower: vec![0.0; n],
-            upper: vec![INF; n],
-            start: vec![0.0; n],
-            col_start,
-            rows: triplets.iter().map(|t| t.0).collect(),
+            data: Data {
+                lower: vec![0.0; n],
+                upper: vec![INF; n],
+                start: vec![0.0; n],
+                column_start: col_start,
+                rows: triplets.iter().map(|t| t.0).collect(),
+                is_linear: true,
+            },
             linear: Some((triplets.iter().map(|t| t.2).collect(), q)),
             function: Box::new(|_, _| Ok(())),
         }
@@ -57,18 +58,21 @@ impl Model {
         f: impl Fn(&[f64], &mut [f64]) -> Result<(), String> + 'static,
     ) -> Model {
         Model {
-            lower: vec![0.0; n],
-            upper: vec![INF; n],
-            start: start.to_vec(),
-            col_start: (0..=n).map(|j| j * n).collect(),
-            rows: (0..n * n).map(|k| k % n).collect(),
+            data: Data {
+                lower: vec![0.0; n],
+                upper: vec![INF; n],
+                start: start.to_vec(),
+                column_start: (0..=n).map(|j| j * n).collect(),
+                rows: (0..n * n).map(|k| k % n).collect(),
+                is_linear: false,
+            },
             linear: None,
             function: Box::new(f),
         }
     }
 
     fn bounds(mut self, lower: &[f64], upper: &[f64]) -> Model {
-        (self.lower, self.upper) = (lower.to_vec(), upper.to_vec());
+        (self.data.lower, self.data.upper) = (lower.to_vec(), upper.to_vec());
         self
     }
 
@@ -85,10 +89,10 @@ impl Model {
     fn solution(&mut self) -> Vec<f64> {
         let outcome = self.solve();
         assert_eq!(outcome.status, Status::Solved, "{outcome:?}");
-        let mut f = vec![0.0; self.n()];
+        let mut f = vec![0.0; self.data.lower.len()];
         self.function(&outcome.x, &mut f)
             .expect("defined at the solution");
-        let residual = natural_residual(&outcome.x, &f, &self.lower, &self.upper).0;
+        let residual = natural_residual(&outcome.x, &f, &self.data.lower, &self.data.upper).0;
         assert!(
             residual <= 1e-6 && (residual - outcome.residual).abs() <= 1e-12,
             "{residual} {}",
@@ -99,28 +103,16 @@ impl Model {
 }
 
 impl Problem for Model {
-    fn n(&self) -> usize {
-        self.lower.len()
-    }
-    fn lower(&self) -> &[f64] {
-        &self.lower
-    }
-    fn upper(&self) -> &[f64] {
-        &self.upper
-    }
-    fn start(&self) -> &[f64] {
-        &self.start
-    }
-    fn pattern(&self) -> (&[usize], &[usize]) {
-        (&self.col_start, &self.rows)
+    fn data(&self) -> &Data {
+        &self.data
     }
     fn function(&mut self, x: &[f64], f: &mut [f64]) -> Result<(), EvalError> {
         match &self.linear {
             Some((values, q)) => {
                 f.copy_from_slice(q);
                 for (j, x) in x.iter().enumerate() {
-                    for k in self.col_start[j]..self.col_start[j + 1] {
-                        f[self.rows[k]] += values[k] * x;
+                    for k in self.data.column_start[j]..self.data.column_start[j + 1] {
+                        f[self.data.rows[k]] += values[k] * x;
                     }
                 }
                 Ok(())
@@ -148,9 +140,6 @@ impl Problem for Model {
             (0..n).for_each(|i| values[j * n + i] = (high[i] - low[i]) / (2.0 * h));
         }
         Ok(())
-    }
-    fn is_linear(&self) -> bool {
-        self.linear.is_some()
     }
 }
 
@@ -413,10 +402,10 @@ fn sizes_zero_and_one_and_all_fixed() {
 #[test]
 fn inconsistent_arrays_are_refused() {
     let mut model = Model::linear(&[vec![1.0]], &[-1.0]);
-    model.rows[0] = 5;
+    model.data.rows[0] = 5;
     assert_eq!(model.solve().status, Status::InvalidProblem);
     let mut model = Model::linear(&[vec![1.0]], &[-1.0]);
-    model.start.clear();
+    model.data.start.clear();
     assert_eq!(model.solve().status, Status::InvalidProblem);
 }
 

@@ -10,7 +10,7 @@ use super::mpec::pairs::Program;
 use super::nlp::relaxation::is_infeasible;
 use super::pairing::{match_rows, refuse};
 use super::{Budget, Claim, Outcome, Settings, SolveError, SolverStatus, Strategy};
-use crate::autodiff::Evaluator;
+use crate::autodiff::{EvalFailure, Evaluator};
 use crate::model::instance::{Instance, Relation};
 use crate::model::problem_type::ProblemType;
 use crate::solve::noise;
@@ -19,15 +19,12 @@ use crate::solve::noise;
 struct Square<'a> {
     instance: &'a Instance,
     evaluator: Evaluator,
-    lower: Vec<f64>,
-    upper: Vec<f64>,
+    /// The pattern is that of the matrix whose row k is the row of column k.
+    data: mcp::Data,
     /// Row of each column; None for a fixed column without one.
     row_of: Vec<Option<u32>>,
     activity: Vec<f64>,
     jacobian: Vec<f64>,
-    /// Pattern by columns of the matrix whose row k is the row of column k.
-    start: Vec<usize>,
-    index: Vec<usize>,
     /// Where each entry of the pattern stands in the evaluator's Jacobian.
     from: Vec<usize>,
 }
@@ -71,56 +68,48 @@ impl<'a> Square<'a> {
             }
         }
         entries.sort_unstable();
-        let mut start = vec![0; n + 1];
+        let mut column_start = vec![0; n + 1];
         for e in &entries {
-            start[e.0 as usize + 1] += 1;
+            column_start[e.0 as usize + 1] += 1;
         }
         for j in 0..n {
-            start[j + 1] += start[j];
+            column_start[j + 1] += column_start[j];
         }
         Ok(Self {
             instance,
             evaluator,
-            lower,
-            upper,
+            data: mcp::Data {
+                lower,
+                upper,
+                start: columns.level.clone(),
+                column_start,
+                rows: entries.iter().map(|e| e.1 as usize).collect(),
+                is_linear: instance.is_linear(),
+            },
             row_of,
             activity: vec![0.0; instance.row_count()],
             jacobian: vec![0.0; row_column.len()],
-            start,
-            index: entries.iter().map(|e| e.1 as usize).collect(),
             from: entries.iter().map(|e| e.2).collect(),
         })
     }
 }
 
+impl From<EvalFailure> for mcp::EvalError {
+    fn from(failure: EvalFailure) -> Self {
+        Self {
+            row: Some(failure.row as usize),
+            message: failure.to_string(),
+        }
+    }
+}
+
 impl mcp::Problem for Square<'_> {
-    fn n(&self) -> usize {
-        self.lower.len()
-    }
-
-    fn lower(&self) -> &[f64] {
-        &self.lower
-    }
-
-    fn upper(&self) -> &[f64] {
-        &self.upper
-    }
-
-    fn start(&self) -> &[f64] {
-        &self.instance.columns.level
-    }
-
-    fn pattern(&self) -> (&[usize], &[usize]) {
-        (&self.start, &self.index)
+    fn data(&self) -> &mcp::Data {
+        &self.data
     }
 
     fn function(&mut self, x: &[f64], f: &mut [f64]) -> Result<(), mcp::EvalError> {
-        self.evaluator
-            .rows(x, &mut self.activity)
-            .map_err(|e| mcp::EvalError {
-                row: Some(e.row as usize),
-                message: e.to_string(),
-            })?;
+        self.evaluator.rows(x, &mut self.activity)?;
         for (j, r) in self.row_of.iter().enumerate() {
             f[j] = r.map_or(0.0, |r| {
                 self.activity[r as usize] - self.instance.rows.rhs[r as usize]
@@ -130,20 +119,11 @@ impl mcp::Problem for Square<'_> {
     }
 
     fn jacobian(&mut self, x: &[f64], values: &mut [f64]) -> Result<(), mcp::EvalError> {
-        self.evaluator
-            .jacobian(x, &mut self.jacobian)
-            .map_err(|e| mcp::EvalError {
-                row: Some(e.row as usize),
-                message: e.to_string(),
-            })?;
+        self.evaluator.jacobian(x, &mut self.jacobian)?;
         for (v, &k) in values.iter_mut().zip(&self.from) {
             *v = self.jacobian[k];
         }
         Ok(())
-    }
-
-    fn is_linear(&self) -> bool {
-        self.instance.is_linear()
     }
 }
 
@@ -351,7 +331,7 @@ const FAR: f64 = 1e6;
 
 /// The largest variable without a bound ahead if the residual falls where all that are so far out go twice as far.
 fn running_away(problem: &mut Square, x: &[f64]) -> Option<usize> {
-    let (lower, upper) = (problem.lower.clone(), problem.upper.clone());
+    let mcp::Data { lower, upper, .. } = problem.data.clone();
     let endless = |j: usize| {
         if x[j] > 0.0 {
             upper[j] >= mcp::INFINITY

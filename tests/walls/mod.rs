@@ -4,15 +4,11 @@
 
 use std::f64::consts::FRAC_PI_4;
 
-use bmod::solve::mcp::{EvalError, Problem};
+use bmod::solve::mcp::{Data, EvalError, Problem};
 
 /// Mx + q by compressed columns; x₀ is the load factor α.
 pub struct Linear {
-    lower: Vec<f64>,
-    upper: Vec<f64>,
-    zero: Vec<f64>,
-    col_start: Vec<usize>,
-    rows: Vec<usize>,
+    data: Data,
     values: Vec<f64>,
     q: Vec<f64>,
 }
@@ -161,13 +157,16 @@ pub fn wall(courses: usize, width: usize, friction: f64, associated: bool) -> Li
     entries.iter().for_each(|e| col_start[e.1 + 1] += 1);
     (0..n).for_each(|j| col_start[j + 1] += col_start[j]);
     Linear {
-        lower: (0..n)
-            .map(|i| if i < z0 { f64::NEG_INFINITY } else { 0.0 })
-            .collect(),
-        upper: vec![f64::INFINITY; n],
-        zero: vec![0.0; n],
-        col_start,
-        rows: entries.iter().map(|e| e.0).collect(),
+        data: Data {
+            lower: (0..n)
+                .map(|i| if i < z0 { f64::NEG_INFINITY } else { 0.0 })
+                .collect(),
+            upper: vec![f64::INFINITY; n],
+            start: vec![0.0; n],
+            column_start: col_start,
+            rows: entries.iter().map(|e| e.0).collect(),
+            is_linear: true,
+        },
         values: entries.iter().map(|e| e.2).collect(),
         q,
     }
@@ -185,11 +184,14 @@ pub fn obstacle(n: usize) -> Linear {
         col_start.push(rows.len());
     }
     Linear {
-        lower: vec![0.0; n],
-        upper: vec![f64::INFINITY; n],
-        zero: vec![0.0; n],
-        col_start,
-        rows,
+        data: Data {
+            lower: vec![0.0; n],
+            upper: vec![f64::INFINITY; n],
+            start: vec![0.0; n],
+            column_start: col_start,
+            rows,
+            is_linear: true,
+        },
         values,
         q: (0..n)
             .map(|i| -h * 10.0 * (9.0 * (i as f64 + 1.0) * h).sin())
@@ -198,26 +200,14 @@ pub fn obstacle(n: usize) -> Linear {
 }
 
 impl Problem for Linear {
-    fn n(&self) -> usize {
-        self.q.len()
-    }
-    fn lower(&self) -> &[f64] {
-        &self.lower
-    }
-    fn upper(&self) -> &[f64] {
-        &self.upper
-    }
-    fn start(&self) -> &[f64] {
-        &self.zero
-    }
-    fn pattern(&self) -> (&[usize], &[usize]) {
-        (&self.col_start, &self.rows)
+    fn data(&self) -> &Data {
+        &self.data
     }
     fn function(&mut self, x: &[f64], f: &mut [f64]) -> Result<(), EvalError> {
         f.copy_from_slice(&self.q);
         for (j, x) in x.iter().enumerate() {
-            for k in self.col_start[j]..self.col_start[j + 1] {
-                f[self.rows[k]] += self.values[k] * x;
+            for k in self.data.column_start[j]..self.data.column_start[j + 1] {
+                f[self.data.rows[k]] += self.values[k] * x;
             }
         }
         Ok(())
@@ -225,8 +215,5 @@ impl Problem for Linear {
     fn jacobian(&mut self, _x: &[f64], values: &mut [f64]) -> Result<(), EvalError> {
         values.copy_from_slice(&self.values);
         Ok(())
-    }
-    fn is_linear(&self) -> bool {
-        true
     }
 }

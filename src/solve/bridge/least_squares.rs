@@ -52,21 +52,11 @@ impl LeastSquares {
         let columns = instance.columns.lower.iter().zip(&instance.columns.upper);
         let free = columns.filter(|(l, u)| l != u).count() - 1;
         let weight = -instance.sign() / coefficient;
-        let terms = instance.nonlinear.iter().filter(|t| !t.row.is_empty());
-        let of_objective = terms.filter(|t| t.row.contains(&(row as u32)));
         let mut squares = Vec::new();
-        for t in of_objective {
-            for slots in t.terms().filter(|s| s.row == row) {
-                let whole = Term {
-                    ops: t.kernel.ops.clone(),
-                    columns: slots.columns.to_vec(),
-                    constants: slots.constants.to_vec(),
-                };
-                let parts = whole.parts(weight * slots.coef);
-                squares.extend(roots(parts)?);
-                if squares.len() + equations > free {
-                    return None;
-                }
+        for (_, coefficient, whole) in expressions(instance).filter(|e| e.0 == row) {
+            squares.extend(roots(whole.parts(weight * coefficient))?);
+            if squares.len() + equations > free {
+                return None;
             }
         }
         if squares.is_empty() || squares.len() + equations != free {

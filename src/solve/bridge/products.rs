@@ -1,27 +1,14 @@
 //! Nonlinear programs in place of the pairs.
 //!
 //! Every pair gets slacks for the positive and the negative part of F, as far as its bounds allow
-//! them: F = v − w, v, w ≥ 0. At a solution (x − l)·v = 0 and (u − x)·w = 0. Instead of that
-//!
-//! * **Scholtes** (2001): each product ≤ μ;
-//! * **aggregate** (Ferris & Tin-Loi 2001, problem (11)): their sum ≤ μ.
-//!
-//! Both satisfy usual constraint qualifications where the program with the products equal to
-//! 0 does not, and their solutions tend to stationary points as μ → 0.
+//! them: F = v − w, v, w ≥ 0. At a solution (x − l)·v = 0 and (u − x)·w = 0. Instead of that each product is at most μ
+//! (Scholtes 2001): this satisfies usual constraint qualifications where the program with the products equal to
+//! 0 does not, and its solutions tend to stationary points as μ → 0.
 
 use crate::model::instance::{Instance, Kernel, KernelTerms, Op, Relation};
 use crate::solve::backend::Seen;
 use crate::solve::mpec::pairs::Program;
 use std::sync::{Arc, Mutex, PoisonError};
-
-/// What takes the place of the products.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
-    /// Each at most μ.
-    Scholtes,
-    /// Their sum at most μ.
-    Aggregate,
-}
 
 /// The nonlinear program for a μ that may be changed.
 pub struct Relaxed {
@@ -89,7 +76,7 @@ fn product() -> Kernel {
 
 impl Relaxed {
     /// For a program; [`Relaxed::tighten`] sets μ and the start.
-    pub fn new(program: &Program, kind: Kind) -> Self {
+    pub fn new(program: &Program) -> Self {
         let mut out = program.envelope.clone();
         let n = out.column_count();
         let first = out.row_count();
@@ -106,21 +93,13 @@ impl Relaxed {
                 let slack = out.columns.push(0.0, f64::INFINITY);
                 extra[p.row].push((slack, sign));
                 products.push((p.column, bound, slack));
-                let row = match kind {
-                    Kind::Scholtes => first + terms.row.len(),
-                    _ => first,
-                };
-                terms.row.push(row as u32);
+                terms.row.push((first + terms.row.len()) as u32);
                 terms.coef.push(1.0);
                 terms.columns.extend([p.column as u32, slack as u32]);
                 // x − l, or u − x
                 terms.constants.extend([sign * bound, -sign]);
             }
         }
-        let count = match kind {
-            Kind::Scholtes => terms.row.len(),
-            _ => 1,
-        };
         let (matrix, rows) = (
             std::mem::take(&mut out.matrix),
             std::mem::take(&mut out.rows),
@@ -130,7 +109,7 @@ impl Relaxed {
         }
         out.rows.marginal[..first].copy_from_slice(&rows.marginal);
         out.rows.scale[..first].copy_from_slice(&rows.scale);
-        for _ in 0..count {
+        for _ in &terms.row {
             out.add_row([], Relation::Less, 0.0);
         }
         if !terms.row.is_empty() {

@@ -65,7 +65,7 @@ fn places<'a>(p: &'a Problem, point: &'a Point) -> impl Iterator<Item = Place> +
         price: point.d[j].abs(),
     });
     let rows = (0..p.m()).map(|i| Place {
-        value: p.rows.line(i).map(|(k, a)| a * point.x[k]).sum(),
+        value: p.activity(i, &point.x),
         lower: p.row_lower[i],
         upper: p.row_upper[i],
         price: point.y[i].abs(),

@@ -121,6 +121,11 @@ impl Problem {
         self.row_lower.len()
     }
 
+    /// Value of a row at a point.
+    pub fn activity(&self, i: usize, x: &[f64]) -> f64 {
+        self.rows.line(i).map(|(j, a)| a * x[j]).sum()
+    }
+
     /// A value between the bounds of a column: one of them if there is one.
     pub fn at_bound(&self, j: usize) -> f64 {
         let bounds = [self.lower[j], self.upper[j]];

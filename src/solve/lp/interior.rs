@@ -2,7 +2,7 @@
 //!
 //! Clarabel solves `min ½xᵀPx + qᵀx, Ax + s = b, s ∈ K` with multipliers z ∈ K*, Px + q + Aᵀz = 0. Here
 //! P = 0 for linear programs, and K is a zero cone (equations) followed by a nonnegative orthant (sides of rows, then
-//! bounds). Fixed columns are left out. With y the derivative of the optimum with respect to a
+//! bounds); fixed columns are equations. With y the derivative of the optimum with respect to a
 //! row's side: y = −z for an equation and an upper side, +z for a lower side; likewise for d.
 //!
 //! Clarabel trusts its input: a problem comes from [`super::form`], which has checked it.
@@ -43,6 +43,8 @@ pub struct Run {
 enum Source {
     /// Row i, `A x = U`.
     Equation(usize),
+    /// Column j, `x = u`.
+    Fixed(usize),
     /// Row i, `A x ≤ U`.
     RowUpper(usize),
     /// Row i, `−A x ≤ −L`.
@@ -56,27 +58,12 @@ enum Source {
 /// Runs Clarabel, on ½xᵀPx + cᵀx where the upper triangle of a positive semidefinite P is given by
 /// columns. The budget is asked every few milliseconds; a factorisation that it does not afford is not begun.
 pub fn solve(p: &Problem, hessian: Option<&Sparse>, tolerance: f64, budget: &Budget) -> Run {
-    let fixed: Vec<bool> = (0..p.n()).map(|j| p.lower[j] == p.upper[j]).collect();
-    let number = numbers(&fixed);
-    let free = fixed.iter().filter(|&&f| !f).count();
-    let mut q: Vec<f64> = (0..p.n())
-        .filter(|&j| !fixed[j])
-        .map(|j| p.cost[j])
-        .collect();
-    let sources = sources(p, &fixed);
-    let equations = sources
-        .iter()
-        .take_while(|s| matches!(s, Source::Equation(_)))
-        .count();
-    let (matrix, b) = stack(p, &sources, &fixed, &number);
-    let by_column = matrix.transpose(free);
-    let a = CscMatrix::new(
-        sources.len(),
-        free,
-        by_column.start,
-        by_column.index.iter().map(|&i| i as usize).collect(),
-        by_column.value,
-    );
+    let n = p.n();
+    let sources = sources(p);
+    let is_equation = |s: &&Source| matches!(s, Source::Equation(_) | Source::Fixed(_));
+    let equations = sources.iter().take_while(is_equation).count();
+    let (matrix, b) = stack(p, &sources);
+    let a = compressed(sources.len(), matrix.transpose(n));
     let cones: Vec<SupportedConeT<f64>> = [
         ZeroConeT(equations),
         NonnegativeConeT(sources.len() - equations),
@@ -86,11 +73,9 @@ pub fn solve(p: &Problem, hessian: Option<&Sparse>, tolerance: f64, budget: &Bud
     .collect();
     let settings = settings(tolerance, budget);
     let mut point = Point {
-        x: (0..p.n())
-            .map(|j| if fixed[j] { p.lower[j] } else { 0.0 })
-            .collect(),
+        x: (0..n).map(|j| p.at_bound(j)).collect(),
         y: vec![0.0; p.m()],
-        d: vec![0.0; p.n()],
+        d: vec![0.0; n],
     };
     let without = |point, ended, iterations| Run {
         point,
@@ -98,16 +83,16 @@ pub fn solve(p: &Problem, hessian: Option<&Sparse>, tolerance: f64, budget: &Bud
         iterations,
         almost: false,
     };
-    if let Err(why) = budget.affords(|| kkt_size(&a, hessian, free)) {
+    if let Err(why) = budget.affords(|| kkt_size(&a, hessian)) {
         budget.log(format!("clarabel: {why}"));
         return without(point, Ended::TooLarge(why), 0);
     }
     let objective = match hessian {
-        None => CscMatrix::zeros((free, free)),
-        Some(h) => reduced(p, h, &fixed, &number, &mut q),
+        None => CscMatrix::zeros((n, n)),
+        Some(h) => compressed(n, h.clone()),
     };
     let run = |mut stop: Question| {
-        let mut solver = DefaultSolver::new(&objective, &q, &a, &b, &cones, settings).ok()?;
+        let mut solver = DefaultSolver::new(&objective, &p.cost, &a, &b, &cones, settings).ok()?;
         solver.set_termination_callback(move |info: &DefaultInfo<f64>| {
             stop(Progress {
                 method: "interior point",
@@ -128,11 +113,11 @@ pub fn solve(p: &Problem, hessian: Option<&Sparse>, tolerance: f64, budget: &Bud
     if !solution.x.iter().chain(&solution.z).all(|v| v.is_finite()) {
         return without(point, Ended::Failed, iterations);
     }
-    for j in (0..p.n()).filter(|&j| !fixed[j]) {
-        point.x[j] = solution.x[number[j]];
+    for j in (0..n).filter(|&j| p.lower[j] < p.upper[j]) {
+        point.x[j] = solution.x[j];
     }
     point.y = row_multipliers(&sources, &solution.z, p.m());
-    let (ended, almost) = ended(solution.status, &point, &fixed, budget);
+    let (ended, almost) = ended(solution.status, &point, p, budget);
     point.d = reduced_costs(p, hessian, &point);
     Run {
         point,
@@ -149,20 +134,16 @@ fn row_multipliers(sources: &[Source], z: &[f64], rows: usize) -> Vec<f64> {
         match source {
             Source::Equation(i) | Source::RowUpper(i) => y[i] -= z,
             Source::RowLower(i) => y[i] += z,
-            Source::Upper(_) | Source::Lower(_) => {}
+            Source::Fixed(_) | Source::Upper(_) | Source::Lower(_) => {}
         }
     }
     y
 }
 
-/// The place of each column among those that are not fixed.
-fn numbers(fixed: &[bool]) -> Vec<usize> {
-    let count = |next: &mut usize, &f: &bool| {
-        let k = *next;
-        *next += usize::from(!f);
-        Some(k)
-    };
-    fixed.iter().scan(0, count).collect()
+/// A matrix of so many rows by columns, as Clarabel takes it.
+fn compressed(rows: usize, columns: Sparse) -> CscMatrix<f64> {
+    let index = columns.index.iter().map(|&i| i as usize).collect();
+    CscMatrix::new(rows, columns.lines(), columns.start, index, columns.value)
 }
 
 /// What is asked of Clarabel.
@@ -210,15 +191,16 @@ fn asking(
 }
 
 /// What Clarabel's status means, and whether it is nearly so only.
-fn ended(status: SolverStatus, point: &Point, fixed: &[bool], budget: &Budget) -> (Ended, bool) {
+fn ended(status: SolverStatus, point: &Point, p: &Problem, budget: &Budget) -> (Ended, bool) {
     match status {
         SolverStatus::Solved => (Ended::Solved, false),
         SolverStatus::AlmostSolved => (Ended::Solved, true),
         SolverStatus::PrimalInfeasible => (Ended::Infeasible(point.y.clone()), false),
         SolverStatus::AlmostPrimalInfeasible => (Ended::Infeasible(point.y.clone()), true),
         SolverStatus::DualInfeasible | SolverStatus::AlmostDualInfeasible => {
-            let moved = |(&x, &fixed): (&f64, &bool)| if fixed { 0.0 } else { x };
-            let ray = point.x.iter().zip(fixed).map(moved).collect();
+            let moves = |j: usize| p.lower[j] < p.upper[j];
+            let ray = point.x.iter().enumerate();
+            let ray = ray.map(|(j, &x)| if moves(j) { x } else { 0.0 }).collect();
             let almost = status == SolverStatus::AlmostDualInfeasible;
             (Ended::Unbounded(ray), almost)
         }
@@ -248,58 +230,27 @@ fn reduced_costs(p: &Problem, hessian: Option<&Sparse>, point: &Point) -> Vec<f6
 }
 
 /// What the factors of Clarabel's KKT matrix [P Aᵀ; A −I] cost.
-fn kkt_size(a: &CscMatrix<f64>, hessian: Option<&Sparse>, free: usize) -> Size {
+fn kkt_size(a: &CscMatrix<f64>, hessian: Option<&Sparse>) -> Size {
     let constraint = (0..a.n).flat_map(|j| {
         let rows = &a.rowval[a.colptr[j]..a.colptr[j + 1]];
-        rows.iter().map(move |&i| (free + i, j))
+        rows.iter().map(move |&i| (a.n + i, j))
     });
-    let objective = hessian
-        .into_iter()
-        .flat_map(entries)
-        .map(|(j, i, _)| (i, j));
-    let inside = objective.filter(|&(i, j)| i < free && j < free);
-    symmetric_size(
-        "the factor of the KKT matrix",
-        free + a.m,
-        constraint.chain(inside),
-    )
+    let objective = hessian.into_iter().flat_map(entries);
+    let all = constraint.chain(objective.map(|(j, i, _)| (i, j)));
+    symmetric_size("the factor of the KKT matrix", a.n + a.m, all)
 }
 
 fn entries(h: &Sparse) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
     (0..h.lines()).flat_map(|j| h.line(j).map(move |(i, v)| (j, i, v)))
 }
 
-/// P without its fixed columns, whose part goes to q.
-fn reduced(
-    p: &Problem,
-    h: &Sparse,
-    fixed: &[bool],
-    number: &[usize],
-    q: &mut [f64],
-) -> CscMatrix<f64> {
-    let mut kept = Sparse::new();
-    for j in 0..h.lines() {
-        for (i, v) in h.line(j) {
-            match (fixed[i], fixed[j]) {
-                (true, false) => q[number[j]] += v * p.lower[i],
-                (false, true) => q[number[i]] += v * p.lower[j],
-                _ => {}
-            }
-        }
-        if !fixed[j] {
-            let line = h.line(j).filter(|&(i, _)| !fixed[i]);
-            kept.push(line.map(|(i, v)| (number[i], v)));
-        }
-    }
-    let index = kept.index.iter().map(|&i| i as usize).collect();
-    CscMatrix::new(q.len(), q.len(), kept.start, index, kept.value)
-}
-
 /// The constraints in the order of Clarabel's cones.
-fn sources(p: &Problem, fixed: &[bool]) -> Vec<Source> {
+fn sources(p: &Problem) -> Vec<Source> {
+    let fixed = |j: &usize| p.lower[*j] == p.upper[*j];
     let mut s: Vec<Source> = (0..p.m())
         .filter(|&i| p.row_lower[i] == p.row_upper[i])
         .map(Source::Equation)
+        .chain((0..p.n()).filter(fixed).map(Source::Fixed))
         .collect();
     for i in (0..p.m()).filter(|&i| p.row_lower[i] != p.row_upper[i]) {
         if p.row_upper[i].is_finite() {
@@ -309,7 +260,7 @@ fn sources(p: &Problem, fixed: &[bool]) -> Vec<Source> {
             s.push(Source::RowLower(i));
         }
     }
-    for j in (0..p.n()).filter(|&j| !fixed[j]) {
+    for j in (0..p.n()).filter(|j| !fixed(j)) {
         if p.upper[j].is_finite() {
             s.push(Source::Upper(j));
         }
@@ -320,29 +271,24 @@ fn sources(p: &Problem, fixed: &[bool]) -> Vec<Source> {
     s
 }
 
-/// Rows and right-hand sides of Clarabel's constraints, fixed columns moved to the right.
-fn stack(p: &Problem, sources: &[Source], fixed: &[bool], number: &[usize]) -> (Sparse, Vec<f64>) {
+/// Rows and right-hand sides of Clarabel's constraints.
+fn stack(p: &Problem, sources: &[Source]) -> (Sparse, Vec<f64>) {
     let mut matrix = Sparse::new();
     let mut b = Vec::with_capacity(sources.len());
     for &source in sources {
-        let (i, sign, side) = match source {
-            Source::Equation(i) | Source::RowUpper(i) => (i, 1.0, p.row_upper[i]),
-            Source::RowLower(i) => (i, -1.0, -p.row_lower[i]),
-            Source::Upper(j) => {
-                matrix.push([(number[j], 1.0)]);
-                b.push(p.upper[j]);
-                continue;
-            }
-            Source::Lower(j) => {
-                matrix.push([(number[j], -1.0)]);
-                b.push(-p.lower[j]);
-                continue;
-            }
+        let (sign, side) = match source {
+            Source::Equation(i) | Source::RowUpper(i) => (1.0, p.row_upper[i]),
+            Source::RowLower(i) => (-1.0, p.row_lower[i]),
+            Source::Fixed(j) | Source::Upper(j) => (1.0, p.upper[j]),
+            Source::Lower(j) => (-1.0, p.lower[j]),
         };
-        let moved = p.rows.line(i).filter(|&(j, _)| fixed[j]);
-        b.push(side - sign * moved.map(|(j, v)| v * p.lower[j]).sum::<f64>());
-        let kept = p.rows.line(i).filter(|&(j, _)| !fixed[j]);
-        matrix.push(kept.map(|(j, v)| (number[j], sign * v)));
+        b.push(sign * side);
+        match source {
+            Source::Equation(i) | Source::RowUpper(i) | Source::RowLower(i) => {
+                matrix.push(p.rows.line(i).map(|(j, v)| (j, sign * v)));
+            }
+            Source::Fixed(j) | Source::Upper(j) | Source::Lower(j) => matrix.push([(j, sign)]),
+        }
     }
     (matrix, b)
 }

@@ -5,7 +5,7 @@
 //! "demand − supply" have a saddle there that "supply − demand" has not.
 
 use super::run::bound;
-use super::{EvalError, Problem};
+use super::{Data, EvalError, Problem};
 
 /// Sweeps over the rows at most, each of which may turn for the sake of others.
 const SIGN_SWEEPS: usize = 10;
@@ -13,13 +13,10 @@ const SIGN_SWEEPS: usize = 10;
 /// The reduced problem.
 pub(super) struct Reduced<'a> {
     inner: &'a mut dyn Problem,
+    /// Of the kept variables.
+    pub(super) data: Data,
     /// Index of each kept variable in the inner problem.
     pub(super) kept: Vec<usize>,
-    lower: Vec<f64>,
-    upper: Vec<f64>,
-    start: Vec<f64>,
-    col_start: Vec<usize>,
-    rows: Vec<usize>,
     /// Position in the inner pattern of each kept entry.
     entry: Vec<usize>,
     /// The sign of each row.
@@ -33,39 +30,40 @@ pub(super) struct Reduced<'a> {
 impl<'a> Reduced<'a> {
     /// Analyses the problem. Bounds must not cross.
     pub(super) fn new(inner: &'a mut dyn Problem) -> Self {
-        let n = inner.n();
-        let lower: Vec<f64> = inner.lower().iter().map(|&b| bound(b)).collect();
-        let upper: Vec<f64> = inner.upper().iter().map(|&b| bound(b)).collect();
+        let data = inner.data();
+        let n = data.lower.len();
+        let bounds = |all: &[f64]| -> Vec<f64> { all.iter().map(|&b| bound(b)).collect() };
+        let (lower, upper) = (bounds(&data.lower), bounds(&data.upper));
         let x: Vec<f64> = (0..n)
-            .map(|i| inner.start()[i].max(lower[i]).min(upper[i]))
+            .map(|i| data.start[i].max(lower[i]).min(upper[i]))
             .collect();
         let keep: Vec<bool> = (0..n).map(|i| lower[i] != upper[i]).collect();
         let kept: Vec<usize> = (0..n).filter(|&i| keep[i]).collect();
         let mut position = vec![usize::MAX; n];
         kept.iter().enumerate().for_each(|(k, &i)| position[i] = k);
-        let (col_start, rows, entry) = {
-            let (start, index) = inner.pattern();
-            let (mut col_start, mut rows, mut entry) = (vec![0], Vec::new(), Vec::new());
-            for &j in &kept {
-                for k in start[j]..start[j + 1] {
-                    if keep[index[k]] {
-                        rows.push(position[index[k]]);
-                        entry.push(k);
-                    }
+        let (mut column_start, mut rows, mut entry) = (vec![0], Vec::new(), Vec::new());
+        for &j in &kept {
+            for k in data.column_start[j]..data.column_start[j + 1] {
+                if keep[data.rows[k]] {
+                    rows.push(position[data.rows[k]]);
+                    entry.push(k);
                 }
-                col_start.push(rows.len());
             }
-            (col_start, rows, entry)
-        };
-        let mut values = vec![0.0; inner.pattern().1.len()];
+            column_start.push(rows.len());
+        }
+        let pick = |all: &[f64]| kept.iter().map(|&i| all[i]).collect();
+        let mut values = vec![0.0; data.rows.len()];
         let mut reduced = Reduced {
             sign: vec![1.0; kept.len()],
-            lower: kept.iter().map(|&i| lower[i]).collect(),
-            upper: kept.iter().map(|&i| upper[i]).collect(),
-            start: kept.iter().map(|&i| x[i]).collect(),
+            data: Data {
+                lower: pick(&lower),
+                upper: pick(&upper),
+                start: pick(&x),
+                column_start,
+                rows,
+                is_linear: data.is_linear,
+            },
             kept,
-            col_start,
-            rows,
             entry,
             x,
             f: vec![0.0; n],
@@ -83,20 +81,21 @@ impl<'a> Reduced<'a> {
     /// In a positive semidefinite matrix no diagonal is negative, and where it is zero, what two variables have in each other's
     /// rows is opposite in sign. A row is turned round where neither speaks against it.
     fn choose_signs(&mut self) {
-        let column = |j: usize| self.col_start[j]..self.col_start[j + 1];
+        let data = &self.data;
+        let column = |j: usize| data.column_start[j]..data.column_start[j + 1];
         let at = |i: usize, j: usize| {
-            let found = self.rows[column(j)].binary_search(&i).ok()?;
+            let found = data.rows[column(j)].binary_search(&i).ok()?;
             Some(self.values[self.entry[column(j).start + found]])
         };
         for _ in 0..SIGN_SWEEPS {
             let mut changed = false;
             for j in 0..self.kept.len() {
-                if self.lower[j] != f64::NEG_INFINITY || self.upper[j] != f64::INFINITY {
+                if data.lower[j] != f64::NEG_INFINITY || data.upper[j] != f64::INFINITY {
                     continue;
                 }
                 let (mut diagonal, mut alike) = (0.0, 0.0);
                 for k in column(j) {
-                    let (i, value) = (self.rows[k], self.values[self.entry[k]]);
+                    let (i, value) = (data.rows[k], self.values[self.entry[k]]);
                     match i == j {
                         true => diagonal = self.sign[j] * value,
                         false => {
@@ -133,25 +132,9 @@ impl<'a> Reduced<'a> {
         self.scatter(x);
         self.x
     }
-}
 
-impl Problem for Reduced<'_> {
-    fn n(&self) -> usize {
-        self.kept.len()
-    }
-    fn lower(&self) -> &[f64] {
-        &self.lower
-    }
-    fn upper(&self) -> &[f64] {
-        &self.upper
-    }
-    fn start(&self) -> &[f64] {
-        &self.start
-    }
-    fn pattern(&self) -> (&[usize], &[usize]) {
-        (&self.col_start, &self.rows)
-    }
-    fn function(&mut self, x: &[f64], f: &mut [f64]) -> Result<(), EvalError> {
+    /// F of the kept rows.
+    pub(super) fn function(&mut self, x: &[f64], f: &mut [f64]) -> Result<(), EvalError> {
         self.scatter(x);
         self.inner.function(&self.x, &mut self.f)?;
         f.iter_mut()
@@ -159,16 +142,15 @@ impl Problem for Reduced<'_> {
             .for_each(|(f, (&i, sign))| *f = sign * self.f[i]);
         Ok(())
     }
-    fn jacobian(&mut self, x: &[f64], values: &mut [f64]) -> Result<(), EvalError> {
+
+    /// The Jacobian of the kept rows and variables.
+    pub(super) fn jacobian(&mut self, x: &[f64], values: &mut [f64]) -> Result<(), EvalError> {
         self.scatter(x);
         self.inner.jacobian(&self.x, &mut self.values)?;
         values
             .iter_mut()
-            .zip(self.entry.iter().zip(&self.rows))
+            .zip(self.entry.iter().zip(&self.data.rows))
             .for_each(|(v, (&k, &i))| *v = self.sign[i] * self.values[k]);
         Ok(())
-    }
-    fn is_linear(&self) -> bool {
-        self.inner.is_linear()
     }
 }

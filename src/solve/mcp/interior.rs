@@ -93,7 +93,7 @@ pub(super) fn interior(run: &mut Run, start: &Point) -> Result<Option<Point>, St
     let Some((mut point, mut state)) = inside(run, start, &bounds) else {
         return Ok(None);
     };
-    log::note(run, log::Part::Crash, || {
+    log::note(run, || {
         "Interior crash\n iter    product  equations    residual     step     prox".into()
     });
     let mut best = start.clone();
@@ -144,7 +144,7 @@ pub(super) fn interior(run: &mut Run, start: &Point) -> Result<Option<Point>, St
         run.crash_iterations += 1;
         let t = step.length;
         let residual = best.residual;
-        log::note(run, log::Part::Crash, || {
+        log::note(run, || {
             format!(
                 "{:5} {mu:10.3e} {off:10.3e} {residual:11.4e} {t:8.1e} {prox:8.1e}",
                 iteration
@@ -168,13 +168,6 @@ pub(super) fn interior(run: &mut Run, start: &Point) -> Result<Option<Point>, St
         } else if t > 0.5 {
             prox = (OVER.2 * prox).max(PROX.0);
         }
-    }
-    if let Some(last) = run.point(snapped(run, &point.x, &state, &bounds))
-        // Another point that is no solution either is no better to start from.
-        && run.converged(last.residual)
-        && last.residual < best.residual
-    {
-        best = last;
     }
     Ok((best.residual < start.residual).then_some(best))
 }

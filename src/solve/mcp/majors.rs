@@ -185,17 +185,8 @@ impl Majors {
                 }
             }
             let Some(candidate) = candidate else {
-                log::major_line(
-                    run,
-                    &self.point.clone(),
-                    run.pivots - pivots,
-                    PathEnd::Numerical,
-                    0.0,
-                    self.prox,
-                    0.0,
-                    '-',
-                    tries,
-                );
+                let (end, pivots) = (PathEnd::Numerical, run.pivots - pivots);
+                log::major_line(run, &self.point, pivots, end, self.prox, '-', tries);
                 if !self.back(run, Some(&jacobian))? {
                     return Ok(());
                 }
@@ -225,7 +216,7 @@ impl Majors {
             _ => '-',
         };
         let (end, prox) = (PathEnd::Solved, candidate.prox);
-        log::major_line(run, &next, pivots, end, 1.0, prox, 1.0, kind, tries);
+        log::major_line(run, &next, pivots, end, prox, kind, tries);
         if kind == '-' {
             return false;
         }
@@ -289,7 +280,7 @@ impl Majors {
                 let off = x.iter().zip(&self.point.x).map(|(a, b)| (a - b).powi(2));
                 let length = off.sum::<f64>().sqrt();
                 // a solution of a linear problem for v > 0 that may stand for a ray
-                let doubtful = run.problem.is_linear() && v > 0.0 && v * length > 0.7 * r;
+                let doubtful = run.problem.data.is_linear && v > 0.0 && v * length > 0.7 * r;
                 let found = Candidate {
                     y: x,
                     kind,
@@ -315,7 +306,11 @@ impl Majors {
     fn proximal_terms(&self, run: &Run, r: f64) -> Vec<f64> {
         let mut prox = vec![self.prox];
         // Where one linearisation is exact, a small term saves the iterations that remove it again.
-        let small = if run.problem.is_linear() { 1e-5 } else { 1e-3 };
+        let small = if run.problem.data.is_linear {
+            1e-5
+        } else {
+            1e-3
+        };
         for v in [
             (small * r.min(1.0)).max(10.0 * self.prox).max(PROX_FIRST),
             (0.1 * r.min(1.0)).max(100.0 * self.prox),
@@ -447,7 +442,7 @@ impl Majors {
             let watched = self.untested < WATCHDOG && next.merit <= 1e8 * reference;
             if monotone || watched {
                 let kind = if monotone { 'M' } else { 'O' };
-                log::major_line(run, &next, pivots, end, 1.0, prox, 1.0, kind, tries);
+                log::major_line(run, &next, pivots, end, prox, kind, tries);
                 self.warm = Some(candidate.kind);
                 self.point = next;
                 if self.point.residual < self.best.residual {
@@ -463,17 +458,7 @@ impl Majors {
                 return Ok(true);
             }
         }
-        log::major_line(
-            run,
-            &self.point.clone(),
-            pivots,
-            end,
-            1.0,
-            prox,
-            0.0,
-            '-',
-            tries,
-        );
+        log::major_line(run, &self.point, pivots, end, prox, '-', tries);
         self.back(run, Some(jacobian))
     }
 

@@ -45,25 +45,31 @@ use super::strategy::Strategies;
 pub use merit::natural_residual;
 pub use options::OPTIONS;
 
-/// min. description: find l ≤ x ≤ u with x = mid(l, u, x − F(x)).
-pub trait Problem {
-    /// Number of variables, and of rows.
-    fn n(&self) -> usize;
+/// What is known of a problem before it is evaluated.
+#[derive(Debug, Clone, Default)]
+pub struct Data {
     /// Lower bounds, one per variable; −∞ allowed (−1e20 and less counts as −∞).
-    fn lower(&self) -> &[f64];
+    pub lower: Vec<f64>,
     /// Upper bounds, one per variable; +∞ allowed (1e20 and more counts as +∞).
-    fn upper(&self) -> &[f64];
+    pub upper: Vec<f64>,
     /// Where to start; need not lie within the bounds.
-    fn start(&self) -> &[f64];
-    /// Jacobian pattern, compressed by columns: (column starts, n + 1 of them; row indices), the
-    /// rows sorted within each column.
-    fn pattern(&self) -> (&[usize], &[usize]);
+    pub start: Vec<f64>,
+    /// Jacobian pattern, compressed by columns: where each column starts, and where the last one ends.
+    pub column_start: Vec<usize>,
+    /// Its row indices, sorted within each column.
+    pub rows: Vec<usize>,
+    /// F is affine: one linearisation is exact.
+    pub is_linear: bool,
+}
+
+/// Find l ≤ x ≤ u with x = mid(l, u, x − F(x)).
+pub trait Problem {
+    /// Bounds, start and pattern.
+    fn data(&self) -> &Data;
     /// F(x) into `f`; an error if a function cannot be evaluated there.
     fn function(&mut self, x: &[f64], f: &mut [f64]) -> Result<(), EvalError>;
     /// Values of the Jacobian at x, in pattern order.
     fn jacobian(&mut self, x: &[f64], values: &mut [f64]) -> Result<(), EvalError>;
-    /// True when F is affine: one linearisation is exact.
-    fn is_linear(&self) -> bool;
 }
 
 /// A function or derivative that cannot be evaluated at a point.
@@ -105,15 +111,6 @@ pub struct Settings {
     pub restart_limit: Option<usize>,
     /// Seconds. Default: no limit but the budget's.
     pub time_limit: f64,
-    /// Whether the log, if one is wanted, has the iterations of crashes. Default true.
-    pub output_crash_iterations: bool,
-    /// Whether it has the major iterations. Default true.
-    pub output_major_iterations: bool,
-    /// Whether it has a line for each path (PATH: some pivots on it). Default true.
-    pub output_minor_iterations: bool,
-    /// Whether it has the problem's size and, at the end, the status, the counts, and where the residual is
-    /// largest. Default true.
-    pub output_final_statistics: bool,
     /// Which fallbacks and special treatments run. Default: all.
     pub strategies: Strategies,
 }

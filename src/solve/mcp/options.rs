@@ -21,11 +21,6 @@ pub const OPTIONS: OptionTable = OptionTable {
         row("nms_memory_size", LIMIT, "10", "memory of the nonmonotone line search"),
         row("restart_limit", LIMIT, "30", "random restarts after all methods have failed; without the option they also end where they would cost more than what went before"),
         row("time_limit", Kind::Real(0.0, f64::INFINITY), "inf", "seconds; `reslim` and `--time-limit` hold as well"),
-        row("output", Kind::Switch, "yes", "with `log=1`: all parts of the log"),
-        row("output_crash_iterations", Kind::Switch, "yes", "with `log=1`: crash iterations"),
-        row("output_major_iterations", Kind::Switch, "yes", "with `log=1`: major iterations"),
-        row("output_minor_iterations", Kind::Switch, "yes", "with `log=1`: a line for each path"),
-        row("output_final_statistics", Kind::Switch, "yes", "with `log=1`: size, status, counts, and where the residual is largest"),
     ],
     more: None,
     ignored: &[
@@ -34,11 +29,13 @@ pub const OPTIONS: OptionTable = OptionTable {
         "gradient_step_limit", "infinity_tolerance", "interrupt_limit", "lemke_rank_deficiency_iterations",
         "lemke_search_type", "lemke_start", "lemke_start_type", "merit_function", "nms",
         "nms_initial_reference_factor", "nms_maximum_watchdogs", "nms_mstep_frequency", "nms_searchtype",
+        "output", "output_crash_iterations",
         "output_crash_iterations_frequency", "output_errors", "output_factorization_singularities",
         "output_final_degeneracy_statistics", "output_final_point", "output_final_point_statistics",
         "output_final_scaling_statistics", "output_final_summary", "output_initial_point",
         "output_initial_point_statistics", "output_initial_scaling_statistics", "output_initial_statistics",
-        "output_linear_model", "output_listing", "output_major_iterations_frequency", "output_memory",
+        "output_linear_model", "output_listing", "output_final_statistics", "output_major_iterations", "output_minor_iterations",
+        "output_major_iterations_frequency", "output_memory",
         "output_minor_iterations_frequency", "output_model_statistics", "output_options",
         "output_preprocess_level", "output_restart_log", "output_time", "output_timing", "output_warnings",
         "preprocess", "return_best_point", "singularity_tolerance", "use_basics", "use_start",
@@ -51,8 +48,6 @@ impl Settings {
         let number = |name| asked.number_of(&OPTIONS, name);
         let whole = |name| number(name).min(1e15) as usize;
         let restarts = asked.number("restart_limit");
-        let all = asked.switch("output").unwrap_or(true);
-        let shown = |name| asked.switch(name).unwrap_or(all);
         Self {
             convergence_tolerance: number("convergence_tolerance"),
             acceptable_tolerance: 1e-6,
@@ -65,10 +60,6 @@ impl Settings {
             nms_memory_size: whole("nms_memory_size"),
             restart_limit: restarts.map(|r| r.min(1e15) as usize),
             time_limit: number("time_limit"),
-            output_crash_iterations: shown("output_crash_iterations"),
-            output_major_iterations: shown("output_major_iterations"),
-            output_minor_iterations: shown("output_minor_iterations"),
-            output_final_statistics: shown("output_final_statistics"),
             strategies: asked.strategies(),
         }
     }

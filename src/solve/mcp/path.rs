@@ -30,7 +30,7 @@
 //! other d_hole is zero, so both moves are needed.
 
 use super::basis::{Basis, Sparse};
-use super::linear::{Kind, LinearProblem, Variable, factorise, solve_refined, solves};
+use super::linear::{Kind, LinearProblem, Variable, factorise, solves};
 use super::random::Random;
 use super::run::{Run, Stop};
 
@@ -318,7 +318,7 @@ impl<'a> Path<'a> {
     /// Fresh factors, y and p.
     fn refactor(&mut self, run: &mut Run) -> bool {
         self.basis = None;
-        let Some(mut basis) = factorise(run, self.problem, &self.slot) else {
+        let Some(mut factor) = factorise(run, self.problem, self.slot.iter().copied()) else {
             return false;
         };
         // b = r − q − Mx + w − v over the variables that are in no slot.
@@ -334,21 +334,17 @@ impl<'a> Path<'a> {
         for (k, b) in b.iter_mut().enumerate() {
             *b = self.r[k] - self.problem.q[k] - *b + rest[k][1] - rest[k][2];
         }
-        let mut p = self.r.clone();
-        if !solve_refined(&mut basis, self.problem, &self.slot, &mut b)
-            || !solve_refined(&mut basis, self.problem, &self.slot, &mut p)
-        {
+        let (Some(y), Some(p)) = (factor.solve(&b), factor.solve(&self.r)) else {
             return false;
-        }
-        self.y = b;
-        self.p = p;
+        };
+        (self.y, self.p) = (y, p);
         if let Some(h) = self.hole {
             // The rounding error goes into the place where the reference rests, not into t.
             let v = self.slot[h];
             self.rest[v.index][v.kind as usize] += self.y[h] - self.t * self.p[h];
             self.y[h] = self.t * self.p[h];
         }
-        self.basis = Some(basis);
+        self.basis = Some(factor.into_basis());
         true
     }
 
@@ -632,13 +628,9 @@ impl<'a> Path<'a> {
 
     /// The solution from the final basis alone, without the covering vector.
     fn solution(&self, run: &mut Run) -> Option<Vec<f64>> {
-        let slot: Vec<Variable> = self
-            .kind
-            .iter()
-            .enumerate()
-            .map(|(index, &kind)| Variable { index, kind })
-            .collect();
-        let mut basis = factorise(run, self.problem, &slot)?;
+        let all = self.kind.iter().enumerate();
+        let slot = all.map(|(index, &kind)| Variable { index, kind });
+        let mut factor = factorise(run, self.problem, slot)?;
         let mut x: Vec<f64> = (0..self.n)
             .map(|k| match self.kind[k] {
                 Kind::Between => 0.0,
@@ -651,9 +643,7 @@ impl<'a> Path<'a> {
         for (b, q) in b.iter_mut().zip(self.problem.q) {
             *b = -q - *b;
         }
-        if !solve_refined(&mut basis, self.problem, &slot, &mut b) {
-            return None;
-        }
+        let b = factor.solve(&b)?;
         for k in 0..self.n {
             if self.kind[k] == Kind::Between {
                 x[k] = b[k].max(self.problem.lower[k]).min(self.problem.upper[k]);
@@ -666,29 +656,17 @@ impl<'a> Path<'a> {
 #[cfg(test)]
 mod tests {
     use super::super::factor::Builder;
-    use super::super::{EvalError, Problem, Settings};
+    use super::super::{Data, EvalError, Problem, Settings};
     use super::*;
     use crate::solve::{Budget, Quiet};
     use feral::SparseColMatrix;
 
     /// Something to count the factorisations of.
-    struct Nothing;
+    struct Nothing(Data);
 
     impl Problem for Nothing {
-        fn n(&self) -> usize {
-            0
-        }
-        fn lower(&self) -> &[f64] {
-            &[]
-        }
-        fn upper(&self) -> &[f64] {
-            &[]
-        }
-        fn start(&self) -> &[f64] {
-            &[]
-        }
-        fn pattern(&self) -> (&[usize], &[usize]) {
-            (&[0], &[])
+        fn data(&self) -> &Data {
+            &self.0
         }
         fn function(&mut self, _x: &[f64], _f: &mut [f64]) -> Result<(), EvalError> {
             Ok(())
@@ -696,9 +674,13 @@ mod tests {
         fn jacobian(&mut self, _x: &[f64], _values: &mut [f64]) -> Result<(), EvalError> {
             Ok(())
         }
-        fn is_linear(&self) -> bool {
-            true
-        }
+    }
+
+    fn nothing() -> Nothing {
+        Nothing(Data {
+            column_start: vec![0],
+            ..Data::default()
+        })
     }
 
     /// A strictly monotone matrix that is neither symmetric nor diagonally dominant.
@@ -780,7 +762,7 @@ mod tests {
                 cover,
                 tolerance: HARRIS,
             };
-            let (settings, mut nothing) = (Settings::default(), Nothing);
+            let (settings, mut nothing) = (Settings::default(), nothing());
             let mut quiet = Quiet::default();
             let budget = Budget::unlimited(&mut quiet);
             let mut run = Run::new(&mut nothing, &settings, &budget, &|_| String::new());
@@ -825,7 +807,7 @@ mod tests {
             cover: true,
             tolerance: HARRIS,
         };
-        let (settings, mut nothing) = (Settings::default(), Nothing);
+        let (settings, mut nothing) = (Settings::default(), nothing());
         let mut quiet = Quiet::default();
         let budget = Budget::unlimited(&mut quiet);
         let mut run = Run::new(&mut nothing, &settings, &budget, &|_| String::new());

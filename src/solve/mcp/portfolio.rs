@@ -3,7 +3,6 @@
 //! Where the path from the given start fails, it is followed from random ones: problems that are linear and not monotone
 //! (bimatrix games) often yield to one path from the right start.
 
-use super::fixed::Reduced;
 use super::log;
 use super::majors::{Crash, INTERIOR, majors};
 use super::merit::natural_residual;
@@ -23,20 +22,17 @@ pub(super) fn solve(
     if let Some(outcome) = invalid(problem) {
         return outcome;
     }
-    let statistics = budget.wants_log() && settings.output_final_statistics;
-    let mut reduced = Reduced::new(problem);
+    let statistics = budget.wants_log();
+    let mut run = Run::new(problem, settings, budget, names);
     if statistics {
         let line = format!(
             "{} variables, {} nonzeros; {} variables are not fixed",
-            reduced.total(),
-            reduced.total_nonzeros(),
-            reduced.kept.len()
+            run.problem.total(),
+            run.problem.total_nonzeros(),
+            run.n
         );
         budget.log(&line);
     }
-    let original = reduced.kept.clone();
-    let mut run = Run::new(&mut reduced, settings, budget, names);
-    run.original = original;
     let (end, restarts) = search(&mut run);
     let mut outcome = Outcome {
         status: Status::NoSolution,
@@ -53,12 +49,10 @@ pub(super) fn solve(
     };
     let evaluated = run.best.is_some();
     let error = run.last_error.take();
-    let mut x = match run.best.take() {
-        Some(best) => best.x,
-        None => run.problem.start().to_vec(),
-    };
+    let start = &run.problem.data.start;
+    let mut x = run.best.take().map_or_else(|| start.clone(), |best| best.x);
     run.clip(&mut x);
-    let x = reduced.postsolve(&x);
+    let x = run.problem.postsolve(&x);
     let worst = judge(problem, x, settings, end, evaluated, &mut outcome);
     if let (Some(error), true) = (error, outcome.status == Status::EvaluationFailed) {
         let at = error
@@ -101,8 +95,9 @@ fn judge(
     let mut f = vec![f64::NAN; x.len()];
     let mut worst = None;
     if problem.function(&x, &mut f).is_ok() {
-        let lower: Vec<f64> = problem.lower().iter().map(|&b| bound(b)).collect();
-        let upper: Vec<f64> = problem.upper().iter().map(|&b| bound(b)).collect();
+        let bounds = |all: &[f64]| -> Vec<f64> { all.iter().map(|&b| bound(b)).collect() };
+        let data = problem.data();
+        let (lower, upper) = (bounds(&data.lower), bounds(&data.upper));
         let (residual, at) = natural_residual(&x, &f, &lower, &upper);
         outcome.residual = residual;
         worst = (residual > 0.0).then_some(at);
@@ -167,9 +162,7 @@ fn attempt(run: &mut Run, restarts: &mut usize) -> Result<(), Stop> {
         *restarts += 1;
         let spread = 10f64.powf(random.between(-2.0, 1.0));
         let x = random_point(run, &mut random, spread);
-        log::note(run, log::Part::Majors, || {
-            format!("Restart {} from a random point", k + 1)
-        });
+        log::note(run, || format!("Restart {} from a random point", k + 1));
         let Some(start) = run.point(x) else { continue };
         if run.work() > budget || succeeds(run, Crash::Newton, start)? {
             return Ok(());
@@ -197,7 +190,7 @@ fn succeeds(run: &mut Run, crash: Crash, start: Point) -> Result<bool, Stop> {
 
 /// The start within the bounds, or a point near it where F is defined.
 fn first_point(run: &mut Run) -> Option<Point> {
-    let mut x = run.problem.start().to_vec();
+    let mut x = run.problem.data.start.clone();
     // A start that is no number says nothing.
     x.iter_mut()
         .filter(|v| !v.is_finite())
@@ -216,7 +209,7 @@ fn first_point(run: &mut Run) -> Option<Point> {
         let mut y: Vec<f64> = x.iter().map(|x| x + size * random.uniform()).collect();
         run.clip(&mut y);
         if let Some(point) = defined(run, y) {
-            log::note(run, log::Part::Majors, || {
+            log::note(run, || {
                 "F is not defined at the start; starting near it".into()
             });
             return Some(point);
@@ -227,7 +220,7 @@ fn first_point(run: &mut Run) -> Option<Point> {
 
 /// l + s·random where l is finite, u − s·random where only u is, else about the start.
 fn random_point(run: &Run, random: &mut Random, spread: f64) -> Vec<f64> {
-    let start = run.problem.start();
+    let start = &run.problem.data.start;
     let mut x: Vec<f64> = (0..run.n)
         .map(|i| {
             let (l, u) = (run.lower[i], run.upper[i]);
@@ -245,12 +238,12 @@ fn random_point(run: &Run, random: &mut Random, spread: f64) -> Vec<f64> {
 }
 
 /// An outcome for problems that make no sense.
-fn invalid(problem: &mut dyn Problem) -> Option<Outcome> {
-    let n = problem.n();
-    let (start, rows) = problem.pattern();
-    let consistent = problem.lower().len() == n
-        && problem.upper().len() == n
-        && problem.start().len() == n
+fn invalid(problem: &dyn Problem) -> Option<Outcome> {
+    let data = problem.data();
+    let n = data.lower.len();
+    let (start, rows) = (&data.column_start, &data.rows);
+    let consistent = data.upper.len() == n
+        && data.start.len() == n
         && start.len() == n + 1
         && start.first() == Some(&0)
         && start.last() == Some(&rows.len())
@@ -260,7 +253,7 @@ fn invalid(problem: &mut dyn Problem) -> Option<Outcome> {
         && rows.iter().all(|&i| i < n);
     let crossed = || {
         (0..n).find(|&i| {
-            let (l, u) = (bound(problem.lower()[i]), bound(problem.upper()[i]));
+            let (l, u) = (bound(data.lower[i]), bound(data.upper[i]));
             l.is_nan() || u.is_nan() || l > u || l == f64::INFINITY || u == f64::NEG_INFINITY
         })
     };
@@ -270,7 +263,7 @@ fn invalid(problem: &mut dyn Problem) -> Option<Outcome> {
             "the problem's arrays contradict each other".to_string(),
         )
     } else if let Some(i) = crossed() {
-        let (l, u) = (problem.lower()[i], problem.upper()[i]);
+        let (l, u) = (data.lower[i], data.upper[i]);
         (
             Status::InvalidBounds,
             format!("variable {}: lower bound {l} and upper bound {u}", i + 1),
@@ -280,7 +273,7 @@ fn invalid(problem: &mut dyn Problem) -> Option<Outcome> {
     };
     Some(Outcome {
         status,
-        x: problem.start().to_vec(),
+        x: data.start.clone(),
         f: vec![f64::NAN; n],
         residual: f64::INFINITY,
         majors: 0,

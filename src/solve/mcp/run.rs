@@ -4,6 +4,7 @@
 use feral::SparseColMatrix;
 
 use super::factor::Fill;
+use super::fixed::Reduced;
 use super::merit::{merit, natural_residual};
 use super::{EvalError, INFINITY, Names, Problem, Settings};
 pub(super) use crate::solve::budget::Stop;
@@ -48,7 +49,7 @@ impl StallCounter {
 
 /// One call of the solver.
 pub(super) struct Run<'a, 'm> {
-    pub(super) problem: &'a mut dyn Problem,
+    pub(super) problem: Reduced<'a>,
     pub(super) settings: &'a Settings,
     pub(super) budget: &'a Budget<'m>,
     pub(super) names: Names<'a>,
@@ -66,8 +67,6 @@ pub(super) struct Run<'a, 'm> {
     pub(super) last_error: Option<EvalError>,
     /// What to expect of factorisations.
     pub(super) fill: Fill,
-    /// Index of variable k in the problem as given, for names in the log.
-    pub(super) original: Vec<usize>,
 }
 
 /// Pivots that cost as much as a factorisation where factors are sparse.
@@ -91,21 +90,18 @@ impl<'a, 'm> Run<'a, 'm> {
         budget: &'a Budget<'m>,
         names: Names<'a>,
     ) -> Self {
-        let n = problem.n();
-        let fill = {
-            let (start, rows) = problem.pattern();
-            Fill::of(n, start, rows)
-        };
-        let lower = problem.lower().iter().map(|&b| bound(b)).collect();
-        let upper = problem.upper().iter().map(|&b| bound(b)).collect();
+        let problem = Reduced::new(problem);
+        let data = &problem.data;
+        let n = data.lower.len();
         Run {
+            fill: Fill::of(n, &data.column_start, &data.rows),
+            lower: data.lower.clone(),
+            upper: data.upper.clone(),
             problem,
             settings,
             budget,
             names,
             n,
-            lower,
-            upper,
             majors: 0,
             pivots: 0,
             crash_iterations: 0,
@@ -113,8 +109,6 @@ impl<'a, 'm> Run<'a, 'm> {
             evaluations: 0,
             best: None,
             last_error: None,
-            fill,
-            original: (0..n).collect(),
         }
     }
 
@@ -158,7 +152,7 @@ impl<'a, 'm> Run<'a, 'm> {
         }
         if let Some(row) = f.iter().position(|v| !v.is_finite()) {
             self.last_error = Some(EvalError {
-                row: self.original.get(row).copied(),
+                row: Some(self.problem.kept[row]),
                 message: "the function value is not finite".into(),
             });
             return None;
@@ -184,12 +178,12 @@ impl<'a, 'm> Run<'a, 'm> {
 
     /// The Jacobian at x, or None where it cannot be evaluated.
     pub(super) fn jacobian(&mut self, x: &[f64]) -> Option<SparseColMatrix> {
-        let (start, rows) = self.problem.pattern();
+        let data = &self.problem.data;
         let mut jacobian = SparseColMatrix {
             m: self.n,
-            col_ptr: start.to_vec(),
-            row_idx: rows.to_vec(),
-            values: vec![0.0; rows.len()],
+            col_ptr: data.column_start.clone(),
+            row_idx: data.rows.clone(),
+            values: vec![0.0; data.rows.len()],
         };
         if let Err(error) = self.problem.jacobian(x, &mut jacobian.values) {
             self.last_error = Some(error);

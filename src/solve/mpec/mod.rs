@@ -29,7 +29,7 @@ mod tree;
 
 use super::answer::{Answer, answer_with, subproblem};
 use super::backend::{About, Backend, Replied, Reply, Seen, Supports, Task, Terms};
-use super::bridge::products::{Exact, Kind, Relaxed};
+use super::bridge::products::{Exact, Relaxed};
 use super::certificate::TOLERANCE;
 use super::lp::Ended;
 use super::registry::BACKENDS;
@@ -202,19 +202,15 @@ impl Search<'_, '_> {
                 self.check_start(&start, pieces)?;
             }
             _ => {
-                let kind = match self.options.aggregate {
-                    true => Kind::Aggregate,
-                    false => Kind::Scholtes,
-                };
                 if method == Method::Pieces {
                     self.improve(&self.program.complete(start.clone()))?;
                 }
                 self.allow(FIRST_WORK.max(FIRST_ITERATIONS * self.size()));
                 if self.best.is_none() && !self.is_over() {
-                    self.relax(kind, &start)?;
+                    self.relax(&start)?;
                 }
                 if self.options.swaps {
-                    self.explore(kind, &start)?;
+                    self.explore(&start)?;
                 }
             }
         }
@@ -531,8 +527,8 @@ impl Search<'_, '_> {
     }
 
     /// A sequence of nonlinear programs with μ → 0; the branches that its points suggest are solved.
-    fn relax(&mut self, kind: Kind, start: &[f64]) -> Result<(), SolveError> {
-        let mut relaxed = Relaxed::new(self.program, kind);
+    fn relax(&mut self, start: &[f64]) -> Result<(), SolveError> {
+        let mut relaxed = Relaxed::new(self.program);
         let mut x = start.to_vec();
         let n = x.len();
         let mut missed = 0;

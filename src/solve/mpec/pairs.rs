@@ -53,6 +53,21 @@ impl Pair {
         }
     }
 
+    /// What x and F + b are between on a piece, x being in an interval `between` its bounds; or, without a piece, in the envelope.
+    pub fn ranges(&self, piece: Option<Piece>, between: (f64, f64), b: f64) -> [(f64, f64); 2] {
+        let inf = f64::INFINITY;
+        match piece {
+            Some(Piece::Lower) => [(self.lower, self.lower), (b, inf)],
+            Some(Piece::Inside) => [between, (b, b)],
+            Some(Piece::Upper) => [(self.upper, self.upper), (-inf, b)],
+            None => {
+                let low = if self.upper.is_finite() { -inf } else { b };
+                let high = if self.lower.is_finite() { inf } else { b };
+                [between, (low, high)]
+            }
+        }
+    }
+
     /// How far a point is from the piece: the bound's distance, or |F|.
     pub fn distance(&self, piece: Piece, x: f64, f: f64) -> f64 {
         match piece {

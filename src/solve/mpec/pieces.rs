@@ -15,7 +15,7 @@
 //!   random points of B. Most tries end at a local minimum of the products that is not 0, but what succeeds is
 //!   better, and the objective does not draw it to where few pairs hold.
 
-use super::pairs::{Piece, Program};
+use super::pairs::{Pair, Piece, Program};
 use super::split::{Point, Retry, Side, Split, shifts};
 use crate::solve::lp::Ended;
 use crate::solve::lp::simplex::{Basis, Simplex, State};
@@ -112,10 +112,10 @@ impl Pieces {
 
     /// An optimal basis of a branch.
     pub fn basis(&mut self, pieces: &[Piece], stop: Stop) -> Option<Basis> {
-        let Split { a, b, bounds } = &mut self.split;
+        let Split { a, b, pairs } = &mut self.split;
         for (side, weight) in [(&mut *a, 1.0), (&mut *b, 0.0)] {
             for (k, &piece) in pieces.iter().enumerate() {
-                side.restrict(k, Some(piece), bounds[k], self.rhs[k]);
+                side.restrict(k, Some(piece), &pairs[k], self.rhs[k]);
             }
             side.price(weight, &[]);
             side.solve(&self.rhs, stop)?;
@@ -139,19 +139,19 @@ impl Pieces {
             self.split.pieces(from, p)
         });
         let rhs = &self.rhs;
-        let bounds = &self.split.bounds;
+        let pairs = &self.split.pairs;
         let side: &mut Side = if which {
             &mut self.split.a
         } else {
             &mut self.split.b
         };
-        for (k, &(l, u)) in bounds.iter().enumerate() {
-            let both = l.is_finite() && u.is_finite();
+        for (k, pair) in pairs.iter().enumerate() {
+            let both = pair.lower.is_finite() && pair.upper.is_finite();
             let piece = given
                 .as_ref()
                 .filter(|_| both && side.has_row(k))
                 .map(|g| g[k]);
-            side.restrict(k, piece, (l, u), rhs[k]);
+            side.restrict(k, piece, pair, rhs[k]);
         }
     }
 
@@ -246,16 +246,16 @@ impl Pieces {
         };
         let side = &mut self.split.b;
         if let Some(k) = avoid {
-            let (l, u) = self.split.bounds[k];
+            let pair = &self.split.pairs[k];
             let v = at.b.pair[k];
             let piece = if side.has_row(k) {
                 Piece::Inside
-            } else if v - l <= u - v {
+            } else if v - pair.lower <= pair.upper - v {
                 Piece::Lower
             } else {
                 Piece::Upper
             };
-            side.restrict(k, Some(piece), (l, u), rhs[k]);
+            side.restrict(k, Some(piece), pair, rhs[k]);
         }
         let b = match run(side, SHORT[0], stop) {
             Retry::Solved(b) => b,
@@ -302,10 +302,10 @@ impl Pieces {
 
     /// How much A would gain, to first order, if a pair did not bind.
     fn gain(&self, at: &Solution, k: usize) -> f64 {
-        let (l, u) = self.split.bounds[k];
+        let pair = &self.split.pairs[k];
         let d = at.a.reduced[k];
         let (up, down) = match (self.split.a.has_row(k), at.pieces[k]) {
-            (true, _) => (l.is_finite(), u.is_finite()),
+            (true, _) => (pair.lower.is_finite(), pair.upper.is_finite()),
             (false, piece) => (piece == Piece::Lower, piece == Piece::Upper),
         };
         let up = if up { -d } else { 0.0 };
@@ -317,9 +317,9 @@ impl Pieces {
     fn random_costs(&mut self) -> Vec<f64> {
         let random: Vec<f64> = self.rhs.iter().map(|_| self.random.uniform()).collect();
         // Signs keep the side bounded where one is.
-        let toward = |(w, &(l, _)): (f64, &(f64, f64))| if l.is_finite() { w } else { -w };
+        let toward = |(w, p): (f64, &Pair)| if p.lower.is_finite() { w } else { -w };
         let sizes = random.iter().map(|w| 10f64.powf(-3.0 * w));
-        sizes.zip(&self.split.bounds).map(toward).collect()
+        sizes.zip(&self.split.pairs).map(toward).collect()
     }
 
     /// From a random start to a point that satisfies the pairs and is better than `best`.

@@ -32,8 +32,6 @@ pub enum Bound {
 pub struct Options {
     /// `mpec_method` = `auto | relaxation | pieces | check`.
     pub method: Method,
-    /// `mpec_relaxation` = `scholtes | aggregate`: every product at most μ, or their sum.
-    pub aggregate: bool,
     /// `mpec_mu`: first μ, where it is given.
     pub mu: Option<f64>,
     /// `mpec_factor`: μ is multiplied by this from one program to the next, where it is given.
@@ -62,7 +60,6 @@ impl Options {
                 "pieces" => Method::Pieces,
                 _ => Method::Check,
             },
-            aggregate: word("mpec_relaxation") == "aggregate",
             mu: asked.number("mpec_mu"),
             factor: asked.number("mpec_factor"),
             last: number("mpec_mu_end"),
@@ -87,7 +84,6 @@ pub const OPTIONS: OptionTable = OptionTable {
     title: "mpec, rmpec: bmod's own, on the linear, nonlinear and complementarity solvers",
     rows: &[
         row("mpec_method", Kind::Words(&["auto", "relaxation", "pieces", "check"]), "auto", "what leads to the branch: `pieces` where it applies, otherwise `relaxation`; `check` judges the levels as they are"),
-        row("mpec_relaxation", Kind::Words(&["scholtes", "aggregate"]), "scholtes", "every product at most μ, or their sum"),
         row("mpec_mu", LIMITLESS, "1, or 1e-2", "first μ; the smaller one up to 120 rows and columns"),
         row("mpec_factor", Kind::Inside(0.0, 1.0), "1e-3, or 0.1", "what μ is multiplied by from one program to the next; the larger one up to 120 rows and columns"),
         row("mpec_mu_end", LIMITLESS, "1e-8", "last μ"),

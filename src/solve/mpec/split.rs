@@ -14,7 +14,7 @@
 //! support of B's point is a local minimum of the whole (in the topology of both), proved by that
 //! one linear program and its multipliers, with no enumeration of the biactive pairs.
 
-use super::pairs::{Piece, Program};
+use super::pairs::{Pair, Piece, Program};
 use crate::solve::lp::Ended;
 use crate::solve::lp::form::{Problem, Sparse};
 use crate::solve::lp::simplex::{Basis, Simplex};
@@ -66,8 +66,8 @@ pub struct Split {
     pub a: Side,
     /// The other one.
     pub b: Side,
-    /// Bounds of each pair's column.
-    pub bounds: Vec<(f64, f64)>,
+    /// The pairs.
+    pub pairs: Vec<Pair>,
 }
 
 impl Split {
@@ -78,7 +78,7 @@ impl Split {
         Some(Self {
             a: make(true),
             b: make(false),
-            bounds: program.pairs.iter().map(|p| (p.lower, p.upper)).collect(),
+            pairs: program.pairs.clone(),
         })
     }
 
@@ -87,7 +87,7 @@ impl Split {
     pub fn pieces(&self, side: &Side, point: &Point) -> Vec<Piece> {
         let piece = |k: usize| {
             let v = point.pair[k];
-            let (l, u) = self.bounds[k];
+            let (l, u) = (self.pairs[k].lower, self.pairs[k].upper);
             if side.has_row[k] {
                 if v > ZERO {
                     Piece::Lower
@@ -104,13 +104,13 @@ impl Split {
                 Piece::Inside
             }
         };
-        (0..self.bounds.len()).map(piece).collect()
+        (0..self.pairs.len()).map(piece).collect()
     }
 
     /// Bounds of side A under which the pairs are on the given pieces.
     pub fn allow(&mut self, pieces: &[Piece], rhs: &[f64]) {
         for (k, &piece) in pieces.iter().enumerate() {
-            self.a.restrict(k, Some(piece), self.bounds[k], rhs[k]);
+            self.a.restrict(k, Some(piece), &self.pairs[k], rhs[k]);
         }
     }
 
@@ -124,7 +124,7 @@ impl Split {
     pub fn weights(&self, side: &Side, point: &Point) -> Vec<f64> {
         let weight = |k: usize| {
             let v = point.pair[k];
-            let (l, u) = self.bounds[k];
+            let (l, u) = (self.pairs[k].lower, self.pairs[k].upper);
             match side.has_row[k] {
                 // F·x
                 true if v.abs() > ZERO => v,
@@ -135,7 +135,7 @@ impl Split {
                 false => 0.0,
             }
         };
-        (0..self.bounds.len()).map(weight).collect()
+        (0..self.pairs.len()).map(weight).collect()
     }
 
     /// Σ |F|·distance over the pairs.
@@ -145,7 +145,7 @@ impl Split {
                 true => (b.pair[k], a.pair[k]),
                 false => (a.pair[k], b.pair[k]),
             };
-            let (l, u) = self.bounds[k];
+            let (l, u) = (self.pairs[k].lower, self.pairs[k].upper);
             let room = if f > 0.0 { x - l } else { u - x };
             if f.abs() <= ZERO || room.abs() <= ZERO {
                 0.0
@@ -153,7 +153,7 @@ impl Split {
                 (f * room).abs()
             }
         };
-        (0..self.bounds.len()).map(product).sum()
+        (0..self.pairs.len()).map(product).sum()
     }
 }
 
@@ -346,21 +346,10 @@ impl Side {
         out
     }
 
-    /// Sets a pair's bounds to those of a piece, or to the envelope's.
-    pub fn restrict(&mut self, k: usize, piece: Option<Piece>, (l, u): (f64, f64), rhs: f64) {
-        let inf = f64::INFINITY;
-        let (lo, hi) = match (self.has_row[k], piece) {
-            (true, Some(Piece::Lower)) => (rhs, inf),
-            (true, Some(Piece::Inside)) => (rhs, rhs),
-            (true, Some(Piece::Upper)) => (-inf, rhs),
-            (true, None) => (
-                if u.is_finite() { -inf } else { rhs },
-                if l.is_finite() { inf } else { rhs },
-            ),
-            (false, Some(Piece::Lower)) => (l, l),
-            (false, Some(Piece::Upper)) => (u, u),
-            (false, _) => (l, u),
-        };
+    /// Sets the bounds of pair k to those of a piece, or to the envelope's.
+    pub fn restrict(&mut self, k: usize, piece: Option<Piece>, pair: &Pair, rhs: f64) {
+        let [x, f] = pair.ranges(piece, (pair.lower, pair.upper), rhs);
+        let (lo, hi) = if self.has_row[k] { f } else { x };
         self.simplex.set_bounds(self.variable[k], lo, hi);
     }
 

@@ -10,7 +10,6 @@
 
 use super::pairs::Piece;
 use super::{Found, ModelStatus, Search, SolveError};
-use crate::solve::bridge::products::Kind;
 use crate::solve::random::Random;
 
 /// Swaps, and random starts, each in iterations times rows and columns.
@@ -21,10 +20,10 @@ const SHORT: u64 = 100;
 
 impl Search<'_, '_> {
     /// Swaps and starts from what was found first.
-    pub(super) fn explore(&mut self, kind: Kind, start: &[f64]) -> Result<(), SolveError> {
+    pub(super) fn explore(&mut self, start: &[f64]) -> Result<(), SolveError> {
         let exhausted = self.swaps()?;
         let before = self.best.as_ref().map(|b| b.objective);
-        self.random_starts(kind, start)?;
+        self.random_starts(start)?;
         let improved = before != self.best.as_ref().map(|b| b.objective);
         if if improved { self.swaps()? } else { exhausted } {
             self.notes.push("no single swap of pieces improves".into());
@@ -82,7 +81,7 @@ impl Search<'_, '_> {
     }
 
     /// The relaxation from points around the start.
-    fn random_starts(&mut self, kind: Kind, start: &[f64]) -> Result<(), SolveError> {
+    fn random_starts(&mut self, start: &[f64]) -> Result<(), SolveError> {
         self.allow(WORK);
         let mut random = Random(0x5eed);
         let columns = &self.program.instance.columns;
@@ -97,7 +96,7 @@ impl Search<'_, '_> {
                 (x + step).max(l).min(u)
             };
             let x: Vec<f64> = start.iter().enumerate().map(near).collect();
-            match self.relax(kind, &x) {
+            match self.relax(&x) {
                 Ok(()) => {}
                 // A function without a value there, say.
                 Err(e) => self.log(&format!("start: {}", e.message)),

@@ -105,42 +105,23 @@ impl Ord for Node {
 }
 
 impl Lpcc<'_> {
-    /// Bounds of a pair's column and of its row's activity on a piece, or in the envelope.
-    pub(super) fn bounds(&self, k: usize, piece: Option<Piece>) -> [(f64, f64); 2] {
-        let (p, b) = (&self.pairs[k], self.rhs[k]);
-        let (l, u) = (p.lower, p.upper);
-        let inf = f64::INFINITY;
-        let between = (self.problem.lower[p.column], self.problem.upper[p.column]);
-        match piece {
-            Some(Piece::Lower) => [(l, l), (b, inf)],
-            Some(Piece::Inside) => [between, (b, b)],
-            Some(Piece::Upper) => [(u, u), (-inf, b)],
-            None => {
-                let low = if u.is_finite() { -inf } else { b };
-                let high = if l.is_finite() { inf } else { b };
-                [between, (low, high)]
-            }
-        }
-    }
-
+    /// Bounds of a pair's column and of its row's activity, on a piece or in the envelope.
     fn apply(&self, simplex: &mut Simplex, node: &mut Problem, k: usize, piece: Option<Piece>) {
-        let [x, f] = self.bounds(k, piece);
-        let (column, row) = (self.pairs[k].column, self.pairs[k].row);
+        let pair = &self.pairs[k];
+        let (column, row) = (pair.column, pair.row);
+        let between = (self.problem.lower[column], self.problem.upper[column]);
+        let [x, f] = pair.ranges(piece, between, self.rhs[k]);
         simplex.set_bounds(column, x.0, x.1);
         simplex.set_bounds(self.problem.n() + row, f.0, f.1);
         (node.lower[column], node.upper[column]) = x;
         (node.row_lower[row], node.row_upper[row]) = f;
     }
 
-    fn activity(&self, row: usize, x: &[f64]) -> f64 {
-        self.problem.rows.line(row).map(|(j, a)| a * x[j]).sum()
-    }
-
     /// Pair that is farthest from being satisfied, among those without a piece.
     fn worst(&self, x: &[f64], decided: &[bool]) -> Option<usize> {
         let mut worst: Option<(usize, f64)> = None;
         for (k, p) in self.pairs.iter().enumerate().filter(|(k, _)| !decided[*k]) {
-            let f = self.activity(p.row, x) - self.rhs[k];
+            let f = self.problem.activity(p.row, x) - self.rhs[k];
             let v = p.natural(x[p.column], f);
             if v > TOLERANCE && worst.is_none_or(|w| v > w.1) {
                 worst = Some((k, v));

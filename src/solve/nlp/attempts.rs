@@ -33,7 +33,7 @@ impl Driver<'_, '_> {
             return Ok(false);
         }
         self.multiplies = true;
-        let run = truncated::solve(&mut *lock(&*self.problem), self.products, self.budget);
+        let run = truncated::solve(&mut lock(&self.problem), self.products, self.budget);
         if let Some(run) = run {
             self.spend(run.steps);
             let trial = self.judge(run.x, Vec::new(), Ended::Acceptable);
@@ -70,7 +70,7 @@ impl Driver<'_, '_> {
     /// The start with the marginals that an earlier solve left: where little or nothing has changed since, that is the answer,
     /// perhaps after a Newton step on its active set. Whether there are such marginals.
     pub(super) fn attempt_again(&mut self) -> bool {
-        let lambda = lock(&*self.problem).marginals_of(self.instance);
+        let lambda = lock(&self.problem).marginals_of(self.instance);
         if lambda.iter().all(|&l| l == 0.0) || !self.settings.runs(Strategy::WarmStart) {
             return false;
         }
@@ -88,7 +88,7 @@ impl Driver<'_, '_> {
             return;
         }
         let budget = self.budget;
-        let run = newton::solve(&mut *lock(&*self.problem), &mut |failures| {
+        let run = newton::solve(&mut lock(&self.problem), &mut |failures| {
             budget.stop_after_failures(failures).is_some()
         });
         if let Some(run) = run {
@@ -115,7 +115,7 @@ impl Driver<'_, '_> {
                 break;
             }
             let mut problem = Problem::smoothed(self.instance, delta);
-            problem.set_start(x.clone());
+            problem.start = x.clone();
             let options = if k == 0 { &[][..] } else { NEARER };
             let solution = self.call(Arc::new(Mutex::new(problem)), options)?;
             if solution.x.iter().all(|v| v.is_finite()) {

@@ -12,7 +12,7 @@
 //! the solver at any size.
 
 use super::polish::number;
-use super::problem::{Entry, Nlp};
+use super::problem::{Entry, Problem};
 use super::symmetric::{Lower, Symmetric};
 use crate::solve::random::Random;
 
@@ -23,7 +23,7 @@ const STEPS: usize = 60;
 /// is none, or nothing could be computed. `fixed` tells the variables that stay where they are, `binding`
 /// the constraints that bind.
 pub fn negative_curvature(
-    nlp: &mut dyn Nlp,
+    nlp: &mut Problem,
     x: &[f64],
     (sigma, lambda): (f64, &[f64]),
     fixed: &[bool],

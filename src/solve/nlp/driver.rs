@@ -19,7 +19,7 @@ use super::consistent::consistent_start;
 use super::growth::Growth;
 use super::interior_point::{Ended, InteriorPoint, lock};
 use super::interior_point_solvers;
-use super::problem::{Nlp, Problem};
+use super::problem::Problem;
 use super::quadratic::Quadratic;
 use super::schedule::{
     AGREEMENT, CHEAP, DOUBT, ELSEWHERE, ENOUGH, FIRST_ATTEMPT_ITERATIONS, From,
@@ -87,13 +87,13 @@ pub fn solve(
     if settings.switch("warm_start_init_point") == Some(true) {
         problem.use_marginals(instance);
     }
-    let start = problem.start().to_vec();
+    let start = problem.start.clone();
     check_start(instance, &mut problem, &start)?;
     let mut was_moved = false;
     if settings.runs(Strategy::DifferentiableStart)
         && let Some(start) = differentiable(&mut problem, &start)
     {
-        problem.set_start(start);
+        problem.start = start;
         was_moved = true;
     }
     let quadratic = match convexity {
@@ -137,7 +137,7 @@ pub fn solve_by_products(task: &Task, settings: &Settings, budget: &Budget) -> O
     }
     let most = most_products(instance)?;
     let mut problem = Problem::with_products(instance);
-    let start = problem.start().to_vec();
+    let start = problem.start.clone();
     if problem.size().1 > 0 || problem.without_derivatives(&start).is_some() {
         return None;
     }
@@ -200,7 +200,7 @@ fn pairs(n: usize, sets: &[Vec<u32>]) -> Vec<(usize, usize)> {
 
 /// x moved by up to this fraction of its size (at least by this much), inwards from its bounds; or, where that is asked for, anywhere
 /// between near bounds. With `by` 0 halfway between them.
-fn placed(nlp: &dyn Nlp, x: &[f64], by: f64, anywhere: bool, seed: u64) -> Vec<f64> {
+fn placed(nlp: &Problem, x: &[f64], by: f64, anywhere: bool, seed: u64) -> Vec<f64> {
     let (lower, upper) = nlp.bounds();
     let mut random = Random(seed);
     let place = |(&x, (&l, &u)): (&f64, (&f64, &f64))| {
@@ -252,7 +252,7 @@ fn check_start(
     {
         level[o.column as usize] = 0.0;
     }
-    match problem.evaluator().rows(&level, &mut activity) {
+    match problem.evaluator.rows(&level, &mut activity) {
         Err(e) if e.error.kind != ErrorKind::Overflow => Err(start_failure(&e)),
         _ => Ok(()),
     }
@@ -330,7 +330,7 @@ impl<'a, 'm> Driver<'a, 'm> {
             named: false,
             solver: interior_point.about().name,
             message: None,
-            start: problem.start().to_vec(),
+            start: problem.start.clone(),
             was_moved: false,
             problem: Arc::new(Mutex::new(problem)),
             iterations: 0,
@@ -351,7 +351,7 @@ impl<'a, 'm> Driver<'a, 'm> {
 
 impl Driver<'_, '_> {
     fn run(&mut self, quadratic: Option<Quadratic>) -> Result<Outcome, SolveError> {
-        let (n, m) = lock(&*self.problem).size();
+        let (n, m) = lock(&self.problem).size();
         if n == 0 || m == 0 && self.is_constant() {
             let x = self.start.clone();
             let trial = self.judge(x, vec![0.0; m], Ended::Solved);
@@ -447,7 +447,7 @@ impl Driver<'_, '_> {
     }
 
     pub(super) fn work_of_iteration(&self) -> f64 {
-        let problem = lock(&*self.problem);
+        let problem = lock(&self.problem);
         let (n, m) = problem.size();
         let size = n + m + problem.jacobian_pattern().0.len() + problem.hessian_pattern().0.len();
         size as f64 + OVERHEAD
@@ -486,7 +486,7 @@ impl Driver<'_, '_> {
     /// As many equations as variables, as in a general equilibrium that is written as a nonlinear program: linear
     /// programs would have nothing to choose.
     pub(super) fn is_square(&self) -> bool {
-        let problem = lock(&*self.problem);
+        let problem = lock(&self.problem);
         let (lower, upper) = problem.sides();
         let equations = lower.iter().zip(upper).filter(|(l, u)| l == u).count();
         equations >= problem.size().0
@@ -494,8 +494,8 @@ impl Driver<'_, '_> {
 
     /// A discretised system, say: linear programs would see little of it, and their pivots would take longer than factors.
     fn is_mostly_nonlinear(&self) -> bool {
-        let mut problem = lock(&*self.problem);
-        let degrees = problem.evaluator().degrees();
+        let problem = lock(&self.problem);
+        let degrees = problem.evaluator.degrees();
         let (lower, upper) = problem.sides();
         let sides = problem.rows.iter().zip(lower.iter().zip(upper));
         let (mut equations, mut inequalities) = (0, 0);
@@ -517,7 +517,7 @@ impl Driver<'_, '_> {
 
     fn is_constant(&self) -> bool {
         use super::problem::ObjectiveForm::{Constant, Nothing};
-        matches!(lock(&*self.problem).form(), Nothing | Constant)
+        matches!(lock(&self.problem).form, Nothing | Constant)
     }
 
     /// Nothing more needs to be tried.
@@ -561,7 +561,7 @@ impl Driver<'_, '_> {
     /// What factors of the KKT matrix cost.
     pub(super) fn size_of_factors(&self) -> Size {
         *self.factors.get_or_init(|| {
-            let problem = lock(&*self.problem);
+            let problem = lock(&self.problem);
             let (n, m) = problem.size();
             let (rows, columns) = problem.jacobian_pattern();
             let jacobian = rows.iter().zip(columns);
@@ -589,12 +589,12 @@ impl Driver<'_, '_> {
             (From::Anywhere(seed), _) => (seed.wrapping_mul(7919), 1.0, true),
             (From::Middle, _) => (0, 0.0, true),
         };
-        let problem = lock(&*self.problem);
-        placed(&*problem, &self.start, by, anywhere, seed)
+        let problem = lock(&self.problem);
+        placed(&problem, &self.start, by, anywhere, seed)
     }
 
     pub(super) fn consistent(&self) -> Option<Vec<f64>> {
-        let problem = lock(&*self.problem);
+        let problem = lock(&self.problem);
         let mut evaluator = Evaluator::first_order(self.instance);
         consistent_start(self.instance, &problem, &mut evaluator, &self.start)
     }
@@ -602,7 +602,7 @@ impl Driver<'_, '_> {
     /// Puts a point into the bounds and computes its residuals.
     pub(super) fn judge(&mut self, mut x: Vec<f64>, lambda: Vec<f64>, ended: Ended) -> Trial {
         let affords = self.affords_factors();
-        let mut problem = lock(&*self.problem);
+        let mut problem = lock(&self.problem);
         let kinks = &mut self.kinks;
         {
             let (lower, upper) = problem.bounds();

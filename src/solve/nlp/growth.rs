@@ -12,7 +12,7 @@
 
 use super::driver::Driver;
 use super::interior_point::{Ended, lock};
-use super::problem::{Nlp, ObjectiveForm, Problem};
+use super::problem::{ObjectiveForm, Problem};
 use super::schedule::From;
 use super::slqp::Effort;
 use super::trial::{CONSIDERABLE, FAR, Trial};
@@ -102,7 +102,7 @@ impl Driver<'_, '_> {
 
     /// The objective variable, if the solver does not see it.
     fn eliminated(&self) -> Option<usize> {
-        match lock(&*self.problem).form() {
+        match lock(&self.problem).form {
             ObjectiveForm::Row { column, .. } => Some(column),
             _ => None,
         }
@@ -126,7 +126,7 @@ impl Driver<'_, '_> {
         let (lower, upper) = problem.bounds();
         let inside = start.iter().zip(lower.iter().zip(upper));
         let start = inside.map(|(x, (&l, &u))| x.max(l).min(u)).collect();
-        problem.set_start(start);
+        problem.start = start;
         let (interior_point, settings) = (self.interior_point, self.settings);
         let mut inner = Driver::new(&instance, problem, interior_point, settings, self.budget);
         inner.growth = Growth::Ignored;

@@ -1,6 +1,6 @@
 //! What the driver and the solvers of nonlinear programs say to each other.
 
-use super::problem::Nlp;
+use super::problem::Problem;
 use crate::solve::backend::About;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -46,10 +46,20 @@ pub struct Solution {
     pub x: Vec<f64>,
     /// Multipliers λ of the constraints, L = f + λᵀg.
     pub lambda: Vec<f64>,
-    /// Objective.
-    pub objective: f64,
     /// Iterations.
     pub iterations: u64,
+}
+
+impl Solution {
+    /// A point without multipliers.
+    pub(super) fn without_multipliers(ended: Ended, x: Vec<f64>, nlp: &Problem) -> Self {
+        Self {
+            ended,
+            x,
+            lambda: vec![0.0; nlp.size().1],
+            iterations: 0,
+        }
+    }
 }
 
 /// Numbers of one iteration.
@@ -96,10 +106,10 @@ impl Control<'_> {
 }
 
 /// A problem that an interior-point solver may take to another thread.
-pub type Shared = Arc<Mutex<dyn Nlp + Send>>;
+pub type Shared = Arc<Mutex<Problem>>;
 
 /// Locks the problem, also after a panic of an interior-point solver: it holds numbers only.
-pub fn lock<T: ?Sized>(nlp: &Mutex<T>) -> MutexGuard<'_, T> {
+pub fn lock<T>(nlp: &Mutex<T>) -> MutexGuard<'_, T> {
     nlp.lock().unwrap_or_else(PoisonError::into_inner)
 }
 

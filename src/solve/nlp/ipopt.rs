@@ -109,7 +109,6 @@ impl InteriorPoint for Ipopt {
                     ended: ended(r.status),
                     x: copy(r.data.x, n),
                     lambda: copy(r.data.mult_g, m),
-                    objective: r.obj_val,
                     iterations: state.iterations,
                 }
             }
@@ -234,14 +233,14 @@ unsafe extern "C" fn init(
         let nlp = lock(&s.nlp);
         unsafe {
             if init_x != 0 {
-                out(x, n).copy_from_slice(nlp.start());
+                out(x, n).copy_from_slice(&nlp.start);
             }
             if init_z != 0 {
                 nlp.start_bounds(out(z_l, n), out(z_u, n));
             }
             if init_lambda != 0 {
                 let lambda = out(lambda, m);
-                match nlp.start_multipliers() {
+                match &nlp.start_multipliers {
                     Some(l) => lambda.copy_from_slice(l),
                     None => lambda.fill(0.0),
                 }

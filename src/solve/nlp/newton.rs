@@ -22,7 +22,7 @@
 //! Where as many rows count as variables are free, and these are many, J itself is factorised: that takes a third of the time, without damping.
 
 use super::path::end_of_path;
-use super::problem::{Entry, Nlp};
+use super::problem::{Entry, Problem};
 use super::symmetric::{Lower, Places, Symmetric};
 use faer::linalg::solvers::Solve;
 use faer::sparse::linalg::solvers::Lu;
@@ -74,8 +74,8 @@ pub(super) struct Run {
 
 /// Runs from the start point until told to stop, by the number of evaluations that failed. None where the start has no values
 /// or derivatives.
-pub(super) fn solve(nlp: &mut dyn Nlp, stop: &mut dyn FnMut(u64) -> bool) -> Option<Run> {
-    let start = nlp.start().to_vec();
+pub(super) fn solve(nlp: &mut Problem, stop: &mut dyn FnMut(u64) -> bool) -> Option<Run> {
+    let start = nlp.start.clone();
     let (mut end, mut steps) = iterate(nlp, start.clone(), Less::Residual, stop)?;
     let (a, b) = nlp.sides();
     let equations = a.iter().zip(b).filter(|(a, b)| a == b).count();
@@ -104,7 +104,7 @@ pub(super) fn solve(nlp: &mut dyn Nlp, stop: &mut dyn FnMut(u64) -> bool) -> Opt
 
 /// Steps from a point while they lead on: the last point, and how many.
 fn iterate(
-    nlp: &mut dyn Nlp,
+    nlp: &mut Problem,
     mut x: Vec<f64>,
     less: Less,
     stop: &mut dyn FnMut(u64) -> bool,
@@ -114,7 +114,7 @@ fn iterate(
     let (mut steps, mut halved) = (0, (0, here.size));
     while steps < STEPS && here.size > EXACT {
         let creeps = less == Less::Residual && steps - halved.0 >= MOST_CREEPING;
-        if creeps || stop(nlp.failures()) {
+        if creeps || stop(nlp.failure_count) {
             break;
         }
         steps += 1;
@@ -140,7 +140,7 @@ fn iterate(
 }
 
 /// The first point along the step, halved again and again, where the residual is less.
-fn shortened(nlp: &mut dyn Nlp, x: &[f64], d: &[f64], here: &System) -> Option<(Vec<f64>, System)> {
+fn shortened(nlp: &mut Problem, x: &[f64], d: &[f64], here: &System) -> Option<(Vec<f64>, System)> {
     let mut length = 1.0;
     for _ in 0..HALVINGS {
         let next = moved(nlp, x, d, length);
@@ -157,7 +157,7 @@ fn shortened(nlp: &mut dyn Nlp, x: &[f64], d: &[f64], here: &System) -> Option<(
 
 /// The first point along the step, halved again and again, from which the next step with the same matrix would be shorter.
 fn nearer(
-    nlp: &mut dyn Nlp,
+    nlp: &mut Problem,
     x: &[f64],
     d: &[f64],
     here: &System,
@@ -179,7 +179,7 @@ fn nearer(
 }
 
 /// x + t d, put into the bounds.
-pub(super) fn moved(nlp: &dyn Nlp, x: &[f64], d: &[f64], t: f64) -> Vec<f64> {
+pub(super) fn moved(nlp: &Problem, x: &[f64], d: &[f64], t: f64) -> Vec<f64> {
     let (lower, upper) = nlp.bounds();
     let all = x.iter().zip(d).zip(lower.iter().zip(upper));
     all.map(|((x, d), (&l, &u))| (x + t * d).max(l).min(u))
@@ -187,7 +187,7 @@ pub(super) fn moved(nlp: &dyn Nlp, x: &[f64], d: &[f64], t: f64) -> Vec<f64> {
 }
 
 /// What the constraints are violated by: positive above, negative below.
-pub(super) fn residuals(nlp: &mut dyn Nlp, x: &[f64]) -> Option<Vec<f64>> {
+pub(super) fn residuals(nlp: &mut Problem, x: &[f64]) -> Option<Vec<f64>> {
     let mut g = vec![0.0; nlp.size().1];
     nlp.constraints(x, &mut g)?;
     let (a, b) = nlp.sides();
@@ -209,7 +209,7 @@ pub(super) struct System {
 }
 
 impl System {
-    pub(super) fn at(nlp: &mut dyn Nlp, x: &[f64]) -> Option<Self> {
+    pub(super) fn at(nlp: &mut Problem, x: &[f64]) -> Option<Self> {
         let residual = residuals(nlp, x)?;
         let mut jacobian = nlp.jacobian_entries(x)?;
         let column_unit: Vec<f64> = x.iter().map(|x| x.abs().max(1.0)).collect();
@@ -279,7 +279,7 @@ impl System {
     /// serve again.
     pub(super) fn step(
         &self,
-        nlp: &dyn Nlp,
+        nlp: &Problem,
         x: &[f64],
         damping: f64,
         order: &mut Option<Symmetric>,
@@ -303,7 +303,7 @@ impl System {
     }
 
     /// Multipliers for which as little as possible of ∇f + Jᵀλ is left, variables at a bound aside.
-    fn multipliers(&self, nlp: &mut dyn Nlp, x: &[f64]) -> Option<Vec<f64>> {
+    fn multipliers(&self, nlp: &mut Problem, x: &[f64]) -> Option<Vec<f64>> {
         let mut gradient = vec![0.0; x.len()];
         nlp.gradient(x, &mut gradient)?;
         let (lower, upper) = nlp.bounds();

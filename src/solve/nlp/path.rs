@@ -7,7 +7,7 @@
 //! stride, which is aimed at once, is Newton's method without any regard to residuals.
 
 use super::newton::{Factors, LEAST_DAMPING, NEARLY, STEPS, System, moved, residuals};
-use super::problem::Nlp;
+use super::problem::Problem;
 use super::symmetric::Symmetric;
 
 /// Strides shorter than this, in units of the first step or of a variable, lead nowhere.
@@ -42,10 +42,10 @@ struct Matrix {
 
 /// The end of the path from the start point, if it is reached, and how many matrices that took.
 pub(super) fn end_of_path(
-    nlp: &mut dyn Nlp,
+    nlp: &mut Problem,
     stop: &mut dyn FnMut(u64) -> bool,
 ) -> (Option<Vec<f64>>, u64) {
-    let x = nlp.start().to_vec();
+    let x = nlp.start.clone();
     let first = residuals(nlp, &x);
     let order = &mut None;
     let begin = first.and_then(|r| Some((Matrix::at(nlp, &x, (1.0, &r), 1.0, order)?, r)));
@@ -56,7 +56,7 @@ pub(super) fn end_of_path(
     let mut path = Matrix { unit, ..begin }.onwards(x, 1.0, -1.0, order);
     let (mut stride, mut matrices) = (f64::INFINITY, 1);
     while path.left > 0.0 {
-        if stop(nlp.failures()) || stride < SHORTEST || matrices >= 2 * STEPS {
+        if stop(nlp.failure_count) || stride < SHORTEST || matrices >= 2 * STEPS {
             return (None, matrices);
         }
         let aims = path.left + stride * path.rate <= 0.0;
@@ -79,7 +79,7 @@ impl Path {
     /// The point that a stride leads to and the steps across the path that it took, if it is found; and the number of matrices.
     fn next(
         &self,
-        nlp: &mut dyn Nlp,
+        nlp: &mut Problem,
         first: &[f64],
         (stride, aims): (f64, bool),
         unit: f64,
@@ -130,7 +130,7 @@ impl Path {
 impl Matrix {
     /// At a point where a part of the first residual is to be left.
     fn at(
-        nlp: &mut dyn Nlp,
+        nlp: &mut Problem,
         x: &[f64],
         (left, first): (f64, &[f64]),
         unit: f64,
@@ -159,7 +159,7 @@ impl Matrix {
     /// The step across a path, or one that leaves t as it is.
     fn step(
         &self,
-        nlp: &mut dyn Nlp,
+        nlp: &mut Problem,
         x: &[f64],
         (left, first): (f64, &[f64]),
         path: &Path,

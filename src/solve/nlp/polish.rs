@@ -5,7 +5,7 @@
 //! Newton steps with \[H Jᵀ; J 0\] solve it to rounding, if the active set is right and regular. Where
 //! it is not, the steps do not reduce the residual and nothing is changed.
 
-use super::problem::Nlp;
+use super::problem::Problem;
 use super::symmetric::{Lower, Symmetric};
 
 /// Steps at most.
@@ -24,7 +24,7 @@ pub struct Active {
 /// Improves x and λ. `target` gives the value of each binding constraint. Returns whether the residual
 /// of the system went down.
 pub fn polish(
-    nlp: &mut dyn Nlp,
+    nlp: &mut Problem,
     active: &Active,
     target: &[f64],
     x: &mut [f64],
@@ -81,7 +81,7 @@ pub(super) fn number(keep: impl Fn(usize) -> bool, count: usize) -> (Vec<Option<
 
 impl System {
     fn new(
-        nlp: &mut dyn Nlp,
+        nlp: &mut Problem,
         active: &Active,
         target: &[f64],
         x: &[f64],

@@ -107,12 +107,10 @@ fn on_a_thread(
     let mut iterations = 0;
     let gone = |ended, iterations| {
         let nlp = lock(&nlp);
+        let x = nlp.latest().to_vec();
         Ok(Solution {
-            ended,
-            x: nlp.latest().to_vec(),
-            lambda: vec![0.0; nlp.size().1],
-            objective: f64::NAN,
             iterations,
+            ..Solution::without_multipliers(ended, x, &nlp)
         })
     };
     loop {
@@ -214,19 +212,15 @@ fn run(
         app.algorithm_builder_from_options(),
         mint,
     ));
-    let m = lock(&nlp).size().1;
-    let x = lock(&nlp).start().to_vec();
+    let solution = {
+        let nlp = lock(&nlp);
+        Solution::without_multipliers(Ended::Broken, nlp.start.clone(), &nlp)
+    };
     let adapter = Rc::new(RefCell::new(Adapter {
         nlp,
         tell,
-        lambda: vec![0.0; m],
-        solution: Solution {
-            ended: Ended::Broken,
-            x,
-            lambda: vec![0.0; m],
-            objective: f64::NAN,
-            iterations: 0,
-        },
+        lambda: solution.lambda.clone(),
+        solution,
     }));
     let status = app.optimize_tnlp(adapter.clone());
     let mut solution = adapter.borrow().solution.clone();
@@ -302,10 +296,10 @@ impl TNLP for Adapter {
     fn get_starting_point(&mut self, sp: StartingPoint<'_>) -> bool {
         let nlp = lock(&self.nlp);
         if sp.init_x {
-            sp.x.copy_from_slice(nlp.start());
+            sp.x.copy_from_slice(&nlp.start);
         }
         if sp.init_lambda {
-            match nlp.start_multipliers() {
+            match &nlp.start_multipliers {
                 Some(l) => sp.lambda.copy_from_slice(l),
                 None => sp.lambda.fill(0.0),
             }
@@ -376,7 +370,6 @@ impl TNLP for Adapter {
     ) {
         self.solution.x = sol.x.to_vec();
         self.solution.lambda = sol.lambda.to_vec();
-        self.solution.objective = sol.obj_value;
     }
 
     fn intermediate_callback(&mut self, s: IterStats, _: &IpoptData, _: &IpoptCq) -> bool {

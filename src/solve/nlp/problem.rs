@@ -15,73 +15,6 @@ use crate::model::instance::{Instance, Relation};
 use crate::solve::backend::Seen;
 use crate::solve::certificate::nonlinear::inside;
 
-/// What an interior-point solver needs of a nonlinear program.
-pub trait Nlp {
-    /// Numbers of variables and constraints.
-    fn size(&self) -> (usize, usize);
-    /// Bounds of the variables.
-    fn bounds(&self) -> (&[f64], &[f64]);
-    /// Bounds of the constraints.
-    fn sides(&self) -> (&[f64], &[f64]);
-    /// Start point.
-    fn start(&self) -> &[f64];
-    /// Start multipliers λ of the constraints, if they are to be used.
-    fn start_multipliers(&self) -> Option<&[f64]>;
-    /// Start values of ∇f + Jᵀλ, which the multipliers of the bounds balance, if they are to be used.
-    fn start_reduced(&self) -> Option<&[f64]>;
-    /// Pattern of the Jacobian of the constraints: rows and columns.
-    fn jacobian_pattern(&self) -> (&[u32], &[u32]);
-    /// Pattern of the lower triangle of the Hessian of the Lagrangian: rows and columns.
-    fn hessian_pattern(&self) -> (&[u32], &[u32]);
-    /// f(x); None where it cannot be evaluated.
-    fn objective(&mut self, x: &[f64]) -> Option<f64>;
-    /// ∇f(x), dense.
-    fn gradient(&mut self, x: &[f64], out: &mut [f64]) -> Option<()>;
-    /// g(x).
-    fn constraints(&mut self, x: &[f64], out: &mut [f64]) -> Option<()>;
-    /// Jacobian of g in the order of its pattern.
-    fn jacobian(&mut self, x: &[f64], out: &mut [f64]) -> Option<()>;
-    /// Lower triangle of σ ∇²f + Σ λ_i ∇²g_i in the order of its pattern.
-    fn hessian(&mut self, x: &[f64], sigma: f64, lambda: &[f64], out: &mut [f64]) -> Option<()>;
-    /// ∇²f(x) times a vector, of a problem that was made for it. None where it has no value, and of other problems.
-    fn product(&mut self, x: &[f64], vector: &[f64]) -> Option<Vec<f64>>;
-    /// Number of evaluations that failed so far.
-    fn failures(&self) -> u64;
-    /// The last point at which derivatives were evaluated: where a run is, or the start.
-    fn latest(&self) -> &[f64];
-
-    /// Start multipliers of the lower and upper bounds; 1 where nothing is known.
-    fn start_bounds(&self, lower: &mut [f64], upper: &mut [f64]) {
-        let Some(reduced) = self.start_reduced() else {
-            lower.fill(1.0);
-            upper.fill(1.0);
-            return;
-        };
-        for ((l, u), r) in lower.iter_mut().zip(upper).zip(reduced) {
-            (*l, *u) = (r.max(0.0), (-r).max(0.0));
-        }
-    }
-
-    /// Jacobian of g: row, column, value.
-    fn jacobian_entries(&mut self, x: &[f64]) -> Option<Vec<Entry>> {
-        let mut value = vec![0.0; self.jacobian_pattern().0.len()];
-        self.jacobian(x, &mut value)?;
-        Some(entries(self.jacobian_pattern(), value))
-    }
-
-    /// Lower triangle of ∇²f + Σ λ_i ∇²g_i: row, column, value.
-    fn hessian_entries(&mut self, x: &[f64], lambda: &[f64]) -> Option<Vec<Entry>> {
-        self.hessian_entries_of(x, 1.0, lambda)
-    }
-
-    /// Lower triangle of σ ∇²f + Σ λ_i ∇²g_i: row, column, value.
-    fn hessian_entries_of(&mut self, x: &[f64], sigma: f64, lambda: &[f64]) -> Option<Vec<Entry>> {
-        let mut value = vec![0.0; self.hessian_pattern().0.len()];
-        self.hessian(x, sigma, lambda, &mut value)?;
-        Some(entries(self.hessian_pattern(), value))
-    }
-}
-
 /// Row, column and value of an entry of a matrix.
 pub type Entry = (usize, usize, f64);
 
@@ -177,8 +110,10 @@ fn second_derivatives(evaluator: &Evaluator, variable: &[u32]) -> Pattern {
 
 /// An instance in the form that solvers take.
 pub struct Problem {
-    evaluator: Evaluator,
-    form: ObjectiveForm,
+    /// Of the whole instance.
+    pub evaluator: Evaluator,
+    /// Form of the objective.
+    pub form: ObjectiveForm,
     /// +1 for a minimum, −1 for a maximum.
     sign: f64,
     rhs: Vec<f64>,
@@ -190,8 +125,11 @@ pub struct Problem {
     upper: Vec<f64>,
     row_lower: Vec<f64>,
     row_upper: Vec<f64>,
-    start: Vec<f64>,
-    start_multipliers: Option<Vec<f64>>,
+    /// Start point.
+    pub start: Vec<f64>,
+    /// Start multipliers λ of the constraints, if they are to be used.
+    pub start_multipliers: Option<Vec<f64>>,
+    /// Start values of ∇f + Jᵀλ, which the multipliers of the bounds balance, if they are to be used.
     start_reduced: Option<Vec<f64>>,
     jacobian: Pattern,
     /// In row 0.
@@ -317,16 +255,6 @@ impl Problem {
         }
     }
 
-    /// Form of the objective.
-    pub fn form(&self) -> ObjectiveForm {
-        self.form
-    }
-
-    /// Sets the start point.
-    pub fn set_start(&mut self, x: Vec<f64>) {
-        self.start = x;
-    }
-
     /// Uses the marginals of the instance's rows and columns as start multipliers.
     pub fn use_marginals(&mut self, instance: &Instance) {
         let s = self.sign;
@@ -370,11 +298,6 @@ impl Problem {
             out[row] = 1.0 / coefficient;
         }
         out
-    }
-
-    /// The evaluator of the whole instance.
-    pub fn evaluator(&mut self) -> &mut Evaluator {
-        &mut self.evaluator
     }
 
     fn place(&mut self, x: &[f64]) {
@@ -482,40 +405,35 @@ impl Problem {
     }
 }
 
-impl Nlp for Problem {
-    fn size(&self) -> (usize, usize) {
+/// What solvers need of it.
+impl Problem {
+    /// Numbers of variables and constraints.
+    pub fn size(&self) -> (usize, usize) {
         (self.columns.len(), self.rows.len())
     }
 
-    fn bounds(&self) -> (&[f64], &[f64]) {
+    /// Bounds of the variables.
+    pub fn bounds(&self) -> (&[f64], &[f64]) {
         (&self.lower, &self.upper)
     }
 
-    fn sides(&self) -> (&[f64], &[f64]) {
+    /// Bounds of the constraints.
+    pub fn sides(&self) -> (&[f64], &[f64]) {
         (&self.row_lower, &self.row_upper)
     }
 
-    fn start(&self) -> &[f64] {
-        &self.start
-    }
-
-    fn start_multipliers(&self) -> Option<&[f64]> {
-        self.start_multipliers.as_deref()
-    }
-
-    fn start_reduced(&self) -> Option<&[f64]> {
-        self.start_reduced.as_deref()
-    }
-
-    fn jacobian_pattern(&self) -> (&[u32], &[u32]) {
+    /// Pattern of the Jacobian of the constraints: rows and columns.
+    pub fn jacobian_pattern(&self) -> (&[u32], &[u32]) {
         (&self.jacobian.row, &self.jacobian.column)
     }
 
-    fn hessian_pattern(&self) -> (&[u32], &[u32]) {
+    /// Pattern of the lower triangle of the Hessian of the Lagrangian: rows and columns.
+    pub fn hessian_pattern(&self) -> (&[u32], &[u32]) {
         (&self.hessian.row, &self.hessian.column)
     }
 
-    fn objective(&mut self, x: &[f64]) -> Option<f64> {
+    /// f(x); None where it cannot be evaluated.
+    pub fn objective(&mut self, x: &[f64]) -> Option<f64> {
         match self.form {
             ObjectiveForm::Nothing | ObjectiveForm::Constant => Some(0.0),
             ObjectiveForm::Variable { variable } => Some(self.sign * x[variable]),
@@ -528,7 +446,8 @@ impl Nlp for Problem {
         }
     }
 
-    fn gradient(&mut self, x: &[f64], out: &mut [f64]) -> Option<()> {
+    /// ∇f(x), dense.
+    pub fn gradient(&mut self, x: &[f64], out: &mut [f64]) -> Option<()> {
         out.fill(0.0);
         match self.form {
             ObjectiveForm::Nothing | ObjectiveForm::Constant => {}
@@ -543,7 +462,8 @@ impl Nlp for Problem {
         Some(())
     }
 
-    fn constraints(&mut self, x: &[f64], out: &mut [f64]) -> Option<()> {
+    /// g(x).
+    pub fn constraints(&mut self, x: &[f64], out: &mut [f64]) -> Option<()> {
         self.need_activity(x)?;
         for (v, &i) in out.iter_mut().zip(&self.rows) {
             *v = self.activity[i as usize];
@@ -551,7 +471,8 @@ impl Nlp for Problem {
         Some(())
     }
 
-    fn jacobian(&mut self, x: &[f64], out: &mut [f64]) -> Option<()> {
+    /// Jacobian of g in the order of its pattern.
+    pub fn jacobian(&mut self, x: &[f64], out: &mut [f64]) -> Option<()> {
         self.need_derivative(x)?;
         for (v, &k) in out.iter_mut().zip(&self.jacobian.from) {
             *v = self.derivative[k as usize];
@@ -559,7 +480,14 @@ impl Nlp for Problem {
         Some(())
     }
 
-    fn hessian(&mut self, x: &[f64], sigma: f64, lambda: &[f64], out: &mut [f64]) -> Option<()> {
+    /// Lower triangle of σ ∇²f + Σ λ_i ∇²g_i in the order of its pattern.
+    pub fn hessian(
+        &mut self,
+        x: &[f64],
+        sigma: f64,
+        lambda: &[f64],
+        out: &mut [f64],
+    ) -> Option<()> {
         self.place(x);
         self.lambda.fill(0.0);
         for (&i, &l) in self.rows.iter().zip(lambda) {
@@ -590,7 +518,8 @@ impl Nlp for Problem {
         Some(())
     }
 
-    fn product(&mut self, x: &[f64], vector: &[f64]) -> Option<Vec<f64>> {
+    /// ∇²f(x) times a vector, of a problem that was made for it. None where it has no value, and of other problems.
+    pub fn product(&mut self, x: &[f64], vector: &[f64]) -> Option<Vec<f64>> {
         let ObjectiveForm::Row {
             row, coefficient, ..
         } = self.form
@@ -611,12 +540,45 @@ impl Nlp for Problem {
         Some(self.columns.iter().map(|&j| out[j as usize]).collect())
     }
 
-    fn failures(&self) -> u64 {
-        self.failure_count
+    /// The last point at which derivatives were evaluated: where a run is, or the start.
+    pub fn latest(&self) -> &[f64] {
+        self.derivative_at.as_deref().unwrap_or(&self.start)
     }
 
-    fn latest(&self) -> &[f64] {
-        self.derivative_at.as_deref().unwrap_or(&self.start)
+    /// Start multipliers of the lower and upper bounds; 1 where nothing is known.
+    pub fn start_bounds(&self, lower: &mut [f64], upper: &mut [f64]) {
+        let Some(reduced) = &self.start_reduced else {
+            lower.fill(1.0);
+            upper.fill(1.0);
+            return;
+        };
+        for ((l, u), r) in lower.iter_mut().zip(upper).zip(reduced) {
+            (*l, *u) = (r.max(0.0), (-r).max(0.0));
+        }
+    }
+
+    /// Jacobian of g: row, column, value.
+    pub fn jacobian_entries(&mut self, x: &[f64]) -> Option<Vec<Entry>> {
+        let mut value = vec![0.0; self.jacobian_pattern().0.len()];
+        self.jacobian(x, &mut value)?;
+        Some(entries(self.jacobian_pattern(), value))
+    }
+
+    /// Lower triangle of ∇²f + Σ λ_i ∇²g_i: row, column, value.
+    pub fn hessian_entries(&mut self, x: &[f64], lambda: &[f64]) -> Option<Vec<Entry>> {
+        self.hessian_entries_of(x, 1.0, lambda)
+    }
+
+    /// Lower triangle of σ ∇²f + Σ λ_i ∇²g_i: row, column, value.
+    pub fn hessian_entries_of(
+        &mut self,
+        x: &[f64],
+        sigma: f64,
+        lambda: &[f64],
+    ) -> Option<Vec<Entry>> {
+        let mut value = vec![0.0; self.hessian_pattern().0.len()];
+        self.hessian(x, sigma, lambda, &mut value)?;
+        Some(entries(self.hessian_pattern(), value))
     }
 }
 

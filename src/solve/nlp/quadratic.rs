@@ -11,7 +11,7 @@
 //! this fails, for whatever reason, is one for the general method.
 
 use super::interior_point::{Ended, Solution};
-use super::problem::{Entry, Nlp, ObjectiveForm, Problem};
+use super::problem::{Entry, ObjectiveForm, Problem};
 use crate::autodiff::Degree;
 use crate::solve::Budget;
 use crate::solve::backend::QuadraticEngine;
@@ -37,10 +37,10 @@ pub struct Quadratic {
 impl Quadratic {
     /// Takes a problem apart; None where it is none of the kind.
     pub fn new(problem: &mut Problem, engine: QuadraticEngine, budget: &Budget) -> Option<Self> {
-        let ObjectiveForm::Row { row, .. } = problem.form() else {
+        let ObjectiveForm::Row { row, .. } = problem.form else {
             return None;
         };
-        let degrees = problem.evaluator().degrees();
+        let degrees = problem.evaluator.degrees();
         let linear = |&i: &u32| degrees[i as usize] == Degree::Linear;
         if degrees[row] != Degree::Quadratic || !problem.rows.iter().all(linear) {
             return None;
@@ -102,7 +102,6 @@ impl Quadratic {
             },
             x: run.point.x,
             lambda: run.point.y.iter().map(|y| -y).collect(),
-            objective: f64::NAN,
             iterations: run.iterations,
         }
     }

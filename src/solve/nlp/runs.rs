@@ -2,7 +2,6 @@
 
 use super::driver::{Driver, UNBOUNDED};
 use super::interior_point::{Control, Ended, Progress, Shared, Solution, lock};
-use super::problem::Nlp;
 use super::schedule::{BASE, From};
 use crate::solve::SolveError;
 use crate::solve::budget::{self, Stop};
@@ -68,9 +67,8 @@ impl Driver<'_, '_> {
         x: Vec<f64>,
         extra: &[(&str, &str)],
     ) -> Result<Option<f64>, SolveError> {
-        lock(&*self.problem).set_start(x.clone());
-        let shared: Shared = self.problem.clone();
-        let solution = self.call(shared, extra)?;
+        lock(&self.problem).start = x.clone();
+        let solution = self.call(self.problem.clone(), extra)?;
         if solution.ended == Ended::TooFewDegrees && !self.is_stopped() {
             return Ok(None);
         }
@@ -95,13 +93,8 @@ impl Driver<'_, '_> {
     ) -> Result<Solution, SolveError> {
         if !self.affords_factors() {
             let nlp = lock(&nlp);
-            return Ok(Solution {
-                ended: Ended::TooLarge,
-                x: nlp.start().to_vec(),
-                lambda: vec![0.0; nlp.size().1],
-                objective: f64::NAN,
-                iterations: 0,
-            });
+            let start = nlp.start.clone();
+            return Ok(Solution::without_multipliers(Ended::TooLarge, start, &nlp));
         }
         let mut options: Vec<(String, String)> = Vec::new();
         let mut put = |k: &str, v: &str| {
@@ -114,7 +107,7 @@ impl Driver<'_, '_> {
         for (k, v) in self.settings.of(self.interior_point.about().options) {
             put(k, v);
         }
-        let (n, m) = lock(&*self.problem).size();
+        let (n, m) = lock(&self.problem).size();
         let fills = n + m > SMALL && self.size_of_factors().operations > FILLS;
         let left = self.budget.iterations_left();
         let cap = if options.iter().any(|(k, _)| k == "max_iter") {
@@ -158,7 +151,7 @@ impl Driver<'_, '_> {
                 dual: Some(p.dual),
                 ..budget::Progress::default()
             });
-            let failures = lock(&*nlp).failures();
+            let failures = lock(&nlp).failure_count;
             let unbounded = p.objective < -UNBOUNDED && p.primal < 1e-3;
             let diverged = unbounded || p.objective > LOST;
             let stopped = budget.stop_after_failures(failures).is_some();

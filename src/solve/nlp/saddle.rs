@@ -10,7 +10,7 @@ use super::curvature::negative_curvature;
 use super::driver::Driver;
 use super::interior_point::{Ended, lock};
 use super::polish::Active;
-use super::problem::{Nlp, Problem};
+use super::problem::Problem;
 use super::schedule::FINEST;
 use super::slqp::Effort;
 use super::trial::{Trial, active_set};
@@ -79,7 +79,7 @@ impl Driver<'_, '_> {
         if !self.affords_factors() {
             return None;
         }
-        let mut problem = lock(&*self.problem);
+        let mut problem = lock(&self.problem);
         let active = active_set(self.instance, &problem, t, 1e-6);
         let strong = self.strongly_active(&problem, t, &active);
         let differs = strong.fixed != active.fixed || strong.binding != active.binding;
@@ -153,7 +153,7 @@ impl Driver<'_, '_> {
         if !self.affords_factors() {
             return None;
         }
-        let mut problem = lock(&*self.problem);
+        let mut problem = lock(&self.problem);
         let (n, m) = problem.size();
         let sizes = row_sizes(&problem);
         let (below, above) = (problem.sides().0.to_vec(), problem.sides().1.to_vec());
@@ -177,7 +177,7 @@ impl Driver<'_, '_> {
         let binding: Vec<bool> = (0..m)
             .map(|i| missed(i, g[i]) <= MET && lambda[i].abs() > WEAK * largest)
             .collect();
-        let d = negative_curvature(&mut *problem, x, (0.0, lambda), &fixed, &binding)?;
+        let d = negative_curvature(&mut problem, x, (0.0, lambda), &fixed, &binding)?;
         if !self.settings.runs(Strategy::ViolationCurvature) {
             return None;
         }

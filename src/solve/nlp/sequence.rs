@@ -4,7 +4,6 @@ use super::driver::Driver;
 use super::growth::Growth;
 use super::interior_point::{Ended, lock};
 use super::newton;
-use super::problem::Nlp;
 use super::schedule::From;
 use super::slqp::{self, Effort};
 use super::trial::{Trial, active_set};
@@ -34,7 +33,7 @@ impl Driver<'_, '_> {
         if self.named {
             return Ok(false);
         }
-        let marginals = again.then(|| lock(&*self.problem).marginals_of(self.instance));
+        let marginals = again.then(|| lock(&self.problem).marginals_of(self.instance));
         let runs = |s| self.settings.runs(s);
         // Newton's method may have come to a feasible point that is no optimum
         let found = self.best.as_ref().filter(|t| t.is_feasible());
@@ -83,8 +82,8 @@ impl Driver<'_, '_> {
         if !self.settings.runs(Strategy::SequentialQuadratic) || !self.affords_factors() {
             return;
         }
-        let mut problem = lock(&*self.problem);
-        problem.set_start(x);
+        let mut problem = lock(&self.problem);
+        problem.start = x;
         let own = self.settings.number("max_iter");
         let own = own.map_or(u64::MAX, |n| n as u64);
         let effort = Effort {
@@ -97,8 +96,8 @@ impl Driver<'_, '_> {
             width: 0.0,
             strategies: self.settings.strategies(),
         };
-        let run = slqp::solve(&mut *problem, request, self.budget);
-        let failures = problem.failures();
+        let run = slqp::solve(&mut problem, request, self.budget);
+        let failures = problem.failure_count;
         drop(problem);
         self.budget.stop_after_failures(failures);
         let Some(run) = run else { return };
@@ -130,7 +129,7 @@ impl Driver<'_, '_> {
             true => trial.residuals.primal_relative <= NEARLY,
             false => trial.is_feasible() && run.end != slqp::End::Spent,
         };
-        let set = active_set(self.instance, &lock(&*self.problem), &trial, NEARLY);
+        let set = active_set(self.instance, &lock(&self.problem), &trial, NEARLY);
         let irregular = ended && !regular && near && set.binding.contains(&true);
         let trial = match irregular && self.settings.runs(Strategy::WidenedRows) {
             true => self.without_multipliers(trial),
@@ -142,18 +141,18 @@ impl Driver<'_, '_> {
     /// Where rows have no multipliers, as a square that is to be 0: the point is optimal if the same rows, a little wider, have an
     /// optimum with multipliers and all but the same value.
     fn without_multipliers(&mut self, mut trial: Trial) -> Trial {
-        let mut problem = lock(&*self.problem);
-        problem.set_start(trial.x.clone());
+        let mut problem = lock(&self.problem);
+        problem.start = trial.x.clone();
         if !trial.is_feasible() {
             let budget = self.budget;
-            let run = newton::solve(&mut *problem, &mut |_| budget.is_over());
+            let run = newton::solve(&mut problem, &mut |_| budget.is_over());
             drop(problem);
             if let Some(run) = run {
                 self.spend(run.steps);
                 trial = self.judge(run.x, trial.lambda, trial.ended);
             }
-            problem = lock(&*self.problem);
-            problem.set_start(trial.x.clone());
+            problem = lock(&self.problem);
+            problem.start = trial.x.clone();
         }
         let request = slqp::Request {
             multipliers: None,
@@ -161,7 +160,7 @@ impl Driver<'_, '_> {
             width: WIDTH,
             strategies: self.settings.strategies(),
         };
-        let run = slqp::solve(&mut *problem, request, self.budget);
+        let run = slqp::solve(&mut problem, request, self.budget);
         drop(problem);
         let Some(run) = run else { return trial };
         self.spend(run.steps);
@@ -182,13 +181,13 @@ impl Driver<'_, '_> {
 
     /// Keeps a point whose multipliers prove that there is no feasible one nearby.
     pub(super) fn note_infeasibility(&mut self, trial: &Trial) {
-        let mut problem = lock(&*self.problem);
+        let mut problem = lock(&self.problem);
         // the constraints push with −λ
         let mut y = vec![0.0; self.instance.row_count()];
         for (&i, l) in problem.rows.iter().zip(&trial.lambda) {
             y[i as usize] = -l;
         }
-        let evaluator = problem.evaluator();
+        let evaluator = &mut problem.evaluator;
         let proved = is_locally_infeasible(self.instance, evaluator, &trial.level, &y, 1e-4);
         if !trial.is_feasible() && self.infeasibility.is_none() && proved {
             self.infeasibility = Some((trial.clone(), y));

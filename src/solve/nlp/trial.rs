@@ -2,7 +2,7 @@
 
 use super::interior_point::Ended;
 use super::polish::{Active, polish};
-use super::problem::{Nlp, Problem};
+use super::problem::Problem;
 use crate::autodiff::{Degree, Evaluator};
 use crate::model::instance::{Instance, Relation};
 pub(super) use crate::solve::certificate::nonlinear::{CONSIDERABLE, FAR};
@@ -97,7 +97,13 @@ pub(super) fn residuals_at(
     let objective = instance
         .objective
         .map_or(0.0, |o| o.sense.sign() * level[o.column as usize]);
-    let (residuals, at) = measure(instance, problem.evaluator(), kinks, &level, &row_marginal);
+    let (residuals, at) = measure(
+        instance,
+        &mut problem.evaluator,
+        kinks,
+        &level,
+        &row_marginal,
+    );
     let diverging = is_promising(instance, &level, &at.reduced, objective, |x, _| x >= FAR);
     let steep = |x: f64, distance: f64| distance <= TOLERANCE * x.max(1.0);
     let steep = is_promising(instance, &level, &at.reduced, objective, steep);
@@ -172,7 +178,7 @@ pub(super) fn tidy(
         place(v, lower[k], r);
         place(v, upper[k], r);
     }
-    let degrees = problem.evaluator().degrees();
+    let degrees = problem.evaluator.degrees();
     for (k, l) in t.lambda.iter().enumerate() {
         let i = problem.rows[k] as usize;
         let mut entries = instance.matrix.row(i);

@@ -10,7 +10,7 @@
 //! bound-constrained optimization problems, 1999). H is only multiplied: a step costs its nonzeros times the products, or, where even
 //! its entries are dear, some gradients for each product.
 
-use super::problem::{Entry, Nlp};
+use super::problem::{Entry, Problem};
 use crate::solve::random::Random;
 use crate::solve::{Budget, Progress};
 use std::cell::Cell;
@@ -45,17 +45,17 @@ pub(super) struct Run {
 
 /// Runs from the start point. None where it has no value or derivatives. `products`: where the Hessian has no entries, how often it is
 /// multiplied at most.
-pub(super) fn solve(nlp: &mut dyn Nlp, products: Option<u64>, budget: &Budget) -> Option<Run> {
+pub(super) fn solve(nlp: &mut Problem, products: Option<u64>, budget: &Budget) -> Option<Run> {
     let (lower, upper) = (nlp.bounds().0.to_vec(), nlp.bounds().1.to_vec());
     let bounds = (&lower[..], &upper[..]);
-    let mut x = clipped(nlp.start(), bounds);
+    let mut x = clipped(&nlp.start, bounds);
     let mut f = nlp.objective(&x).filter(|f| f.is_finite())?;
     let (mut steps, mut radius, mut saddles) = (0, 1.0_f64, 0);
     let mut model = Model::at(nlp, &x, products)?;
     while steps < STEPS
         && radius > SMALLEST
         && model.left.get() != Some(0)
-        && budget.stop_after_failures(nlp.failures()).is_none()
+        && budget.stop_after_failures(nlp.failure_count).is_none()
     {
         let slope = model.slope(bounds);
         budget.tell(Progress {
@@ -123,7 +123,7 @@ struct Model {
 }
 
 impl Model {
-    fn at(nlp: &mut dyn Nlp, x: &[f64], products: Option<u64>) -> Option<Self> {
+    fn at(nlp: &mut Problem, x: &[f64], products: Option<u64>) -> Option<Self> {
         let mut gradient = vec![0.0; x.len()];
         nlp.gradient(x, &mut gradient)?;
         let hessian = match products {
@@ -151,7 +151,7 @@ impl Model {
     }
 
     /// H s.
-    fn product(&self, nlp: &mut dyn Nlp, s: &[f64]) -> Vec<f64> {
+    fn product(&self, nlp: &mut Problem, s: &[f64]) -> Vec<f64> {
         let mut out = vec![0.0; s.len()];
         let Some(hessian) = &self.hessian else {
             self.left.set(self.left.get().map(|l| l.saturating_sub(1)));
@@ -167,7 +167,7 @@ impl Model {
     }
 
     /// Change of the model.
-    fn change(&self, nlp: &mut dyn Nlp, s: &[f64]) -> f64 {
+    fn change(&self, nlp: &mut Problem, s: &[f64]) -> f64 {
         dot(&self.gradient, s) + 0.5 * dot(&self.product(nlp, s), s)
     }
 
@@ -194,7 +194,7 @@ impl Model {
     /// A step within the bounds that is worth as much as one along the projected gradient, and on from there by conjugate gradients.
     fn step(
         &self,
-        nlp: &mut dyn Nlp,
+        nlp: &mut Problem,
         bounds: (&[f64], &[f64]),
         radius: f64,
         budget: &Budget,
@@ -238,7 +238,7 @@ impl Model {
     /// From a step by conjugate gradients on the free variables, within the trust region: what is added to it.
     fn conjugate(
         &self,
-        nlp: &mut dyn Nlp,
+        nlp: &mut Problem,
         first: &[f64],
         free: &[bool],
         radius: f64,
@@ -290,7 +290,7 @@ impl Model {
     /// From a point without slope: one where f is less along a direction in which it curves downwards.
     fn beyond(
         &self,
-        nlp: &mut dyn Nlp,
+        nlp: &mut Problem,
         bounds: (&[f64], &[f64]),
         f: f64,
     ) -> Option<(Vec<f64>, f64)> {
@@ -308,7 +308,7 @@ impl Model {
 
     /// A direction of negative curvature in the variables that no slope holds at a bound, as conjugate gradients for any right-hand
     /// side come across one.
-    fn downwards(&self, nlp: &mut dyn Nlp, (lower, upper): (&[f64], &[f64])) -> Option<Vec<f64>> {
+    fn downwards(&self, nlp: &mut Problem, (lower, upper): (&[f64], &[f64])) -> Option<Vec<f64>> {
         let held = |j: usize| {
             let at_bound = self.x[j] <= lower[j] || self.x[j] >= upper[j];
             at_bound && self.gradient[j].abs() > FLAT

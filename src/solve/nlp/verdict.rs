@@ -3,7 +3,6 @@
 use super::Convexity;
 use super::driver::Driver;
 use super::interior_point::{Ended, lock};
-use super::problem::Nlp;
 use super::relaxation;
 use super::trial::Trial;
 use crate::autodiff::{Degree, Evaluator};
@@ -27,8 +26,8 @@ impl Driver<'_, '_> {
         let lacks_optimum = !self.best.as_ref().is_some_and(Trial::is_optimal);
         if self.best.is_none() || lacks_optimum && self.is_stopped() {
             // what was stopped may have left a feasible point for worse ones
-            let m = lock(&*self.problem).size().1;
-            let seen = lock(&*self.problem).best_seen.take().map(|b| b.1);
+            let m = lock(&self.problem).size().1;
+            let seen = lock(&self.problem).best_seen.take().map(|b| b.1);
             for x in [Some(self.start.clone()), seen].into_iter().flatten() {
                 let trial = self.judge(x, vec![0.0; m], Ended::Broken);
                 self.keep(trial);
@@ -36,10 +35,10 @@ impl Driver<'_, '_> {
         }
         let best = self.best.take().expect("a point was kept");
         let unbounded = self.is_unbounded(&best);
-        let mut problem = lock(&*self.problem);
-        let affine = is_affine(self.instance, problem.evaluator());
+        let mut problem = lock(&self.problem);
+        let affine = is_affine(self.instance, &mut problem.evaluator);
         let mut proved = |t: &Trial, y: &[f64]| {
-            is_locally_infeasible(self.instance, problem.evaluator(), &t.level, y, 1e-4)
+            is_locally_infeasible(self.instance, &mut problem.evaluator, &t.level, y, 1e-4)
         };
         let mut best = best;
         let mut ray = Vec::new();

@@ -17,7 +17,6 @@
 use super::super::barrier::Goal;
 use super::super::form::{Problem, Sparse};
 use super::super::{Ended, interior_only};
-use super::polyhedron::Polyhedron;
 use crate::solve::Budget;
 
 /// Slacks below this are none.
@@ -28,14 +27,14 @@ const RESIDUAL: f64 = 1e-8;
 const SHORT: f64 = 0.3;
 
 /// Twice the objective at a point, or 1 more than 0.
-fn twice(poly: &Polyhedron, near: &[f64]) -> f64 {
+fn twice(poly: &Problem, near: &[f64]) -> f64 {
     let value: f64 = poly.cost.iter().zip(near).map(|(c, x)| c * x).sum();
     value + if value == 0.0 { 1.0 } else { value.abs() }
 }
 
 /// A point with room around it, as nearly as floating-point numbers go. None: none was found.
 /// `near` is a point that is (nearly) optimal.
-pub(super) fn point(poly: &Polyhedron, near: &[f64], budget: &Budget) -> Option<Vec<f64>> {
+pub(super) fn point(poly: &Problem, near: &[f64], budget: &Budget) -> Option<Vec<f64>> {
     for limit in [twice(poly, near), f64::INFINITY] {
         if let Some((x, slack)) = search(poly, Room::Equal, limit, budget)
             && slack > SLACK
@@ -50,7 +49,7 @@ pub(super) fn point(poly: &Polyhedron, near: &[f64], budget: &Budget) -> Option<
 /// `central` one, which has room everywhere.
 pub(super) fn room_for(
     lack: &[f64],
-    poly: &Polyhedron,
+    poly: &Problem,
     near: &[f64],
     central: Option<&[f64]>,
     budget: &Budget,
@@ -85,12 +84,7 @@ enum Room<'a> {
     Shares(&'a [f64]),
 }
 
-fn search(
-    poly: &Polyhedron,
-    room: Room<'_>,
-    limit: f64,
-    budget: &Budget,
-) -> Option<(Vec<f64>, f64)> {
+fn search(poly: &Problem, room: Room<'_>, limit: f64, budget: &Budget) -> Option<(Vec<f64>, f64)> {
     let n = poly.n();
     let mut p = Problem {
         rows: Sparse::new(),

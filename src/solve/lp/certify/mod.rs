@@ -32,7 +32,6 @@ use super::{Ended, SolveError, watch};
 use crate::model::instance::Instance;
 use crate::solve::interval::{Interval, WideSum, two_sum};
 use crate::solve::{Budget, Limits, Outcome, Quiet};
-use polyhedron::Polyhedron;
 use system::System;
 
 /// Why a bound was not proved.
@@ -143,10 +142,10 @@ pub(super) fn certify_by(
         let basis = basis.map(|b| form.basis(b));
         let [x, y] = vertex(&p, near, basis.as_deref(), budget);
         if upper.is_err() {
-            upper = side(&p, &Polyhedron::primal(&p), x, budget, true);
+            upper = side(&p, &p, x, budget, true);
         }
         if lower.is_err() {
-            lower = side(&p, &Polyhedron::dual(&p), y, budget, false);
+            lower = side(&p, &polyhedron::dual(&p), y, budget, false);
         }
         let missing = upper.is_err() || lower.is_err();
         if missing
@@ -225,15 +224,18 @@ fn vertex(p: &Problem, near: Point, basis: Option<&[State]>, budget: &Budget) ->
 /// and where inequalities have no room, with those held that have none at a central point.
 fn side(
     p: &Problem,
-    poly: &Polyhedron,
+    poly: &Problem,
     near: Wide,
     budget: &Budget,
     primal: bool,
 ) -> Result<Interval, Unproved> {
     let fail = |why, row: Option<usize>, column: Option<usize>| {
-        let row = row.map(|i| poly.origin[i]);
         // A row of the dual side stands for a column, and the other way round.
-        let (row, column) = if primal { (row, column) } else { (column, row) };
+        let mut priced = (0..p.n()).filter(|&j| polyhedron::is_priced(p, j));
+        let (row, column) = match primal {
+            true => (row, column),
+            false => (column, row.and_then(|i| priced.nth(i))),
+        };
         Err(Unproved { why, row, column })
     };
     let value = |x: &Enclosed| match primal {
@@ -278,7 +280,7 @@ enum Missed {
 
 /// The value of a point between `near` and one with room. What has no room at `inner` is held.
 fn mixed(
-    poly: &Polyhedron,
+    poly: &Problem,
     (mut near, mut near_low): Wide,
     mut inner: Option<Vec<f64>>,
     value: &dyn Fn(&Enclosed) -> Interval,
@@ -335,7 +337,7 @@ fn mixed(
 }
 
 /// The share of an inner point that gives what is lacking, as far as its room goes, and little more.
-fn expected(lack: &[f64], poly: &Polyhedron, inner: &[f64]) -> f64 {
+fn expected(lack: &[f64], poly: &Problem, inner: &[f64]) -> f64 {
     let rows = (0..poly.m()).map(|i| poly.activity(i, inner));
     let sides = poly.row_lower.iter().zip(&poly.row_upper);
     let sides = sides.chain(poly.lower.iter().zip(&poly.upper));
@@ -353,7 +355,7 @@ fn room([l, u]: [f64; 2], [a, b]: [f64; 2]) -> f64 {
 }
 
 /// Whether each variable may move; those without room are put to their bound in both points.
-fn hold(poly: &Polyhedron, near: &mut [f64], near_low: &mut [f64], inner: &mut [f64]) -> Vec<bool> {
+fn hold(poly: &Problem, near: &mut [f64], near_low: &mut [f64], inner: &mut [f64]) -> Vec<bool> {
     let sides = poly.lower.iter().zip(&poly.upper).enumerate();
     let moves = |(j, (&l, &u)): (usize, (&f64, &f64))| {
         let has_room = |inner: &f64| room([l, u], [near[j], *inner]) > inner::SLACK;
@@ -370,7 +372,7 @@ fn hold(poly: &Polyhedron, near: &mut [f64], near_low: &mut [f64], inner: &mut [
 
 /// The rows that are equations or have no room; the value of each row that is to be met; and the size of their terms.
 fn equations(
-    poly: &Polyhedron,
+    poly: &Problem,
     near: &[f64],
     inner: Option<&[f64]>,
 ) -> (Vec<usize>, Vec<f64>, Vec<f64>) {
@@ -391,7 +393,7 @@ fn equations(
 }
 
 /// By how much each row, then each column, of the enclosed point may be outside its sides.
-fn lack(poly: &Polyhedron, x: &Enclosed, system: &System) -> Vec<f64> {
+fn lack(poly: &Problem, x: &Enclosed, system: &System) -> Vec<f64> {
     // What is not a number proves nothing.
     let beyond = |low: f64, high: f64| match (low.is_nan(), high.is_nan()) {
         (false, false) => low.max(high).max(0.0),

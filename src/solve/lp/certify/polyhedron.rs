@@ -10,95 +10,47 @@ use super::super::form::{Problem, Sparse};
 use super::Enclosed;
 use crate::solve::interval::{Interval, WideSum};
 
-/// `l ≤ x ≤ u, L ≤ Ax ≤ U`, with the row numbers of what it was made from.
-pub(super) struct Polyhedron {
-    pub lower: Vec<f64>,
-    pub upper: Vec<f64>,
-    pub row_lower: Vec<f64>,
-    pub row_upper: Vec<f64>,
-    pub rows: Sparse,
-    pub columns: Sparse,
-    /// What a step costs, for choosing a point that costs little: c, and −b on the dual side, as far
-    /// as that is linear.
-    pub cost: Vec<f64>,
-    /// For each row the row (or, on the dual side, the column) of the program it stands for.
-    pub origin: Vec<usize>,
+/// Whether a row of the dual side stands for a column.
+pub(super) fn is_priced(p: &Problem, j: usize) -> bool {
+    p.lower[j].is_infinite() || p.upper[j].is_infinite()
 }
 
-impl Polyhedron {
-    /// The feasible points of a program.
-    pub(super) fn primal(p: &Problem) -> Self {
-        Self {
-            lower: p.lower.clone(),
-            upper: p.upper.clone(),
-            row_lower: p.row_lower.clone(),
-            row_upper: p.row_upper.clone(),
-            rows: p.rows.clone(),
-            columns: p.columns.clone(),
-            cost: p.cost.clone(),
-            origin: (0..p.m()).collect(),
+/// The feasible multipliers of a program; their cost is −b as far as that is linear, for choosing a point that costs little.
+pub(super) fn dual(p: &Problem) -> Problem {
+    let side = |finite: bool, value: f64| if finite { 0.0 } else { value };
+    let mut d = Problem {
+        rows: Sparse::new(),
+        ..Problem::default()
+    };
+    for i in 0..p.m() {
+        let (l, u) = (p.row_lower[i].is_finite(), p.row_upper[i].is_finite());
+        let (low, high) = (p.row_lower[i], p.row_upper[i]);
+        d.cost.push(match (l, u) {
+            (true, true) if low < high => 0.0,
+            (true, _) => -low,
+            (_, true) => -high,
+            _ => 0.0,
+        });
+        // Only the side that is there may be priced.
+        d.lower.push(side(!u && l, f64::NEG_INFINITY));
+        d.upper.push(side(!l && u, f64::INFINITY));
+        if !l && !u {
+            d.lower[i] = 0.0;
+            d.upper[i] = 0.0;
         }
     }
-
-    /// The feasible multipliers of a program.
-    pub(super) fn dual(p: &Problem) -> Self {
-        let side = |finite: bool, value: f64| if finite { 0.0 } else { value };
-        let mut d = Self {
-            lower: Vec::with_capacity(p.m()),
-            upper: Vec::with_capacity(p.m()),
-            row_lower: Vec::new(),
-            row_upper: Vec::new(),
-            rows: Sparse::new(),
-            columns: Sparse::new(),
-            cost: Vec::with_capacity(p.m()),
-            origin: Vec::new(),
-        };
-        for i in 0..p.m() {
-            let (l, u) = (p.row_lower[i].is_finite(), p.row_upper[i].is_finite());
-            let (low, high) = (p.row_lower[i], p.row_upper[i]);
-            d.cost.push(match (l, u) {
-                (true, true) if low < high => 0.0,
-                (true, _) => -low,
-                (_, true) => -high,
-                _ => 0.0,
-            });
-            // Only the side that is there may be priced.
-            d.lower.push(side(!u && l, f64::NEG_INFINITY));
-            d.upper.push(side(!l && u, f64::INFINITY));
-            if !l && !u {
-                d.lower[i] = 0.0;
-                d.upper[i] = 0.0;
-            }
+    for j in 0..p.n() {
+        let (l, u) = (p.lower[j].is_finite(), p.upper[j].is_finite());
+        if !is_priced(p, j) {
+            continue;
         }
-        for j in 0..p.n() {
-            let (l, u) = (p.lower[j].is_finite(), p.upper[j].is_finite());
-            if l && u {
-                continue;
-            }
-            d.row_lower
-                .push(if l { f64::NEG_INFINITY } else { p.cost[j] });
-            d.row_upper.push(if u { f64::INFINITY } else { p.cost[j] });
-            d.rows.push(p.columns.line(j));
-            d.origin.push(j);
-        }
-        d.columns = d.rows.transpose(p.m());
-        d
+        d.row_lower
+            .push(if l { f64::NEG_INFINITY } else { p.cost[j] });
+        d.row_upper.push(if u { f64::INFINITY } else { p.cost[j] });
+        d.rows.push(p.columns.line(j));
     }
-
-    /// Number of columns.
-    pub(super) fn n(&self) -> usize {
-        self.lower.len()
-    }
-
-    /// Number of rows.
-    pub(super) fn m(&self) -> usize {
-        self.row_lower.len()
-    }
-
-    /// Value of a row at a point of plain numbers.
-    pub(super) fn activity(&self, i: usize, x: &[f64]) -> f64 {
-        self.rows.line(i).map(|(j, a)| a * x[j]).sum()
-    }
+    d.columns = d.rows.transpose(p.m());
+    d
 }
 
 /// cᵀx over the enclosed point: an upper bound of the minimum is its upper end.

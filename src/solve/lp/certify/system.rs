@@ -17,8 +17,8 @@
 
 use super::super::simplex::factor::{Entries, Factor, Failure};
 use super::Enclosed;
-use super::polyhedron::Polyhedron;
 use crate::solve::interval::{WideSum, two_sum};
+use crate::solve::lp::form::Problem;
 
 /// A basis of equations with proved bounds on its inverse.
 pub(super) struct System {
@@ -44,7 +44,7 @@ impl System {
     /// For the equations `rows`; column j may move if `moves[j]`. Err: an
     /// equation that depends on others, or on which no column may move.
     pub(super) fn new(
-        poly: &Polyhedron,
+        poly: &Problem,
         rows: Vec<usize>,
         moves: &[bool],
         unit: Vec<f64>,
@@ -150,7 +150,7 @@ impl System {
 
     /// Moves the basis columns of `x` until the equations hold as well as pairs of numbers allow,
     /// and encloses the point at which they hold exactly. None: numbers broke down.
-    pub(super) fn enclose(&mut self, poly: &Polyhedron, x: &mut Enclosed) -> Option<()> {
+    pub(super) fn enclose(&mut self, poly: &Problem, x: &mut Enclosed) -> Option<()> {
         for _ in 0..4 {
             let mut rest: Vec<f64> = Vec::with_capacity(self.rows.len());
             for &i in &self.rows {
@@ -181,7 +181,7 @@ impl System {
     }
 
     /// Row minus its right-hand side.
-    fn rest(&self, poly: &Polyhedron, i: usize, x: &Enclosed) -> WideSum {
+    fn rest(&self, poly: &Problem, i: usize, x: &Enclosed) -> WideSum {
         // A held row is at the side where it is; an equation at either.
         let mut sum = WideSum::new(-x.target[i]);
         for (j, a) in poly.rows.line(i) {
@@ -204,7 +204,7 @@ enum Choice {
 
 /// A column of its own for each equation, the equations with the fewest candidates first.
 fn choose(
-    poly: &Polyhedron,
+    poly: &Problem,
     rows: &[usize],
     moves: &[bool],
     entries: &dyn Fn(usize) -> Entries,
@@ -245,7 +245,7 @@ fn choose(
 
 /// Brings a column into every slot that has none.
 fn repair(
-    poly: &Polyhedron,
+    poly: &Problem,
     rows: &[usize],
     moves: &[bool],
     entries: &dyn Fn(usize) -> Entries,

@@ -1,4 +1,4 @@
-//! Columns that are decided, that are slacks, and that equations give by others.
+//! Columns that are decided, and that equations give by others.
 
 use super::{Activity, Doubleton, Entries, Hopeless, ROUNDING, State, Step, Work, term};
 
@@ -68,28 +68,24 @@ impl Work {
         Ok(true)
     }
 
-    /// A column of one row: given by it, or its slack.
+    /// A column of one row, whose bounds the others of that row imply: given by it.
     fn singleton_column(&mut self, j: usize) -> Result<(), Hopeless> {
         let Some((i, a)) = self.column_entries(j).next() else {
             return Ok(());
         };
-        if self.row_count[i] < 2 || self.row_count[i] > LONG_ROW {
+        if self.row_count[i] < 2
+            || self.row_count[i] > LONG_ROW
+            || self.is_implied(j, i, a, &self.activity(i)) != [true, true]
+        {
             return Ok(());
         }
-        let range = self.activity(i);
-        if self.is_implied(j, i, a, &range) == [true, true] {
-            let y = self.cost[j] / a;
-            let at = match self.sides(i) {
-                [low, high] if low == high => State::Lower,
-                [low, _] if y > 0.0 || y == 0.0 && low.is_finite() => State::Lower,
-                _ => State::Upper,
-            };
-            return self.substitute(i, j, at, None);
-        }
-        if self.cost[j] == 0.0 || self.is_equation(i) {
-            self.slack(i, j, a);
-        }
-        Ok(())
+        let y = self.cost[j] / a;
+        let at = match self.sides(i) {
+            [low, high] if low == high => State::Lower,
+            [low, _] if y > 0.0 || y == 0.0 && low.is_finite() => State::Lower,
+            _ => State::Upper,
+        };
+        self.substitute(i, j, at, None)
     }
 
     /// Whether a row and the bounds of its other columns imply this one's.
@@ -110,34 +106,6 @@ impl Work {
             self.lower[j].is_infinite() || l >= self.lower[j] - slack(self.lower[j]),
             self.upper[j].is_infinite() || u <= self.upper[j] + slack(self.upper[j]),
         ]
-    }
-
-    /// Takes the column for the slack of its row.
-    fn slack(&mut self, i: usize, j: usize, a: f64) {
-        let (cost, bounds, sides) = (self.cost[j], self.bounds(j), self.sides(i));
-        let entries = self.row_entries(i).filter(|e| e.0 != j);
-        let entries: Entries = entries.map(|(k, v)| (k as u32, v)).collect();
-        if cost != 0.0 {
-            for &(k, v) in &entries {
-                self.change_cost(k as usize, v * cost / a);
-            }
-        }
-        let [low, high] = term(a, bounds);
-        self.row_lower[i] -= high;
-        self.row_upper[i] -= low;
-        self.remove_column(j);
-        for &(k, _) in &entries {
-            self.new_columns.push(k as usize);
-        }
-        self.steps.push(Step::Slack {
-            row: i as u32,
-            column: j as u32,
-            a,
-            cost,
-            bounds,
-            sides,
-            entries,
-        });
     }
 
     /// A free column and an inequality change places: what the row adds up to is the column then, and the row is gone. Taken where the row is short

@@ -4,7 +4,6 @@
 //! program before it that is optimal if the other was (Andersen & Andersen 1995; Gondzio 1997):
 //!
 //! * a row of one column becomes bounds; a row that bounds imply goes; one that only one point can hold fixes it (*forcing*);
-//! * a column of one row is the slack of that row;
 //! * an equation gives a column as a combination of others where its bounds follow from theirs, or where there is but one other;
 //! * a free column gives its place to the activity of an inequality, which becomes the bounds of a column.
 //!
@@ -54,17 +53,6 @@ enum Step {
     Forcing {
         row: u32,
         upper: bool,
-        entries: Entries,
-    },
-    /// A column of one row that was taken for its slack: its bounds, and the sides of the row.
-    Slack {
-        row: u32,
-        column: u32,
-        a: f64,
-        cost: f64,
-        bounds: [f64; 2],
-        sides: [f64; 2],
-        /// The row without the column.
         entries: Entries,
     },
     /// A column that a row at its side gives by the others.

@@ -104,22 +104,14 @@ fn nearest(x: f64, [l, u]: [f64; 2]) -> State {
 impl Back {
     /// Where a column is; the sign of its reduced cost says at which of two equal bounds.
     fn column_state(&mut self, j: usize, fixed: bool) -> State {
-        self.columns[j] = self.state(self.columns[j], self.d[j], fixed);
+        let d = self.d[j];
+        self.columns[j] = match self.columns[j] {
+            _ if self.ray && d == 0.0 => State::Basic,
+            _ if self.ray => by_sign(d),
+            State::Lower | State::Upper if fixed => by_sign(d),
+            state => state,
+        };
         self.columns[j]
-    }
-
-    fn row_state(&mut self, i: usize, fixed: bool) -> State {
-        self.rows[i] = self.state(self.rows[i], self.y[i], fixed);
-        self.rows[i]
-    }
-
-    fn state(&self, state: State, d: f64, fixed: bool) -> State {
-        match (self.ray, state) {
-            (true, _) if d == 0.0 => State::Basic,
-            (true, _) => by_sign(d),
-            (false, State::Lower | State::Upper) if fixed => by_sign(d),
-            (false, state) => state,
-        }
     }
 
     fn cost(&self, cost: f64) -> f64 {
@@ -169,7 +161,6 @@ impl Back {
                 upper,
                 entries,
             } => self.forcing(*row as usize, *upper, entries),
-            Step::Slack { .. } => self.slack(step),
             Step::Substituted { .. } => self.substituted(step),
             Step::Exchanged {
                 row,
@@ -204,56 +195,6 @@ impl Back {
             .for_each(|&(j, a)| self.d[j as usize] -= a * y);
         self.d[basic] = 0.0;
         self.columns[basic] = State::Basic;
-    }
-
-    fn slack(&mut self, step: &Step) {
-        let Step::Slack {
-            row,
-            column,
-            a,
-            cost,
-            bounds,
-            sides,
-            entries,
-        } = step
-        else {
-            return;
-        };
-        let (i, j) = (*row as usize, *column as usize);
-        let rest = Self::sum(entries, &self.x);
-        let fixed = sides[0] == sides[1] && bounds[0] == bounds[1];
-        let state = self.row_state(i, fixed);
-        self.d[j] = -a * self.y[i];
-        self.y[i] += self.cost(*cost) / a;
-        if state != State::Basic {
-            // The row's lower side is the column's end that adds most.
-            self.columns[j] = if *a > 0.0 { opposite(state) } else { state };
-            self.x[j] = match self.columns[j] {
-                State::Upper => bounds[1],
-                _ => bounds[0],
-            };
-            if sides[0] == sides[1] {
-                self.rows[i] = by_sign(self.y[i]);
-            }
-            return;
-        }
-        for (bound, state) in bounds.iter().zip([State::Lower, State::Upper]) {
-            let activity = rest + a * bound;
-            if sides[0] < activity && activity < sides[1] {
-                (self.x[j], self.columns[j]) = (*bound, state);
-                return;
-            }
-        }
-        // Neither end will do: the row is at a side, and the column inside.
-        let low = sides[0].is_finite();
-        let low = low
-            && (sides[0] == sides[1] || sides[1].is_infinite() || {
-                let x = (sides[0] - rest) / a;
-                bounds[0] <= x && x <= bounds[1]
-            });
-        self.x[j] = (sides[usize::from(!low)] - rest) / a;
-        self.columns[j] = State::Basic;
-        self.rows[i] = if low { State::Lower } else { State::Upper };
     }
 
     fn substituted(&mut self, step: &Step) {

@@ -19,41 +19,26 @@ use crate::solve::lp::simplex::Simplex;
 
 /// A lower bound of costᵀx over the rows and bounds of a problem.
 pub(crate) fn bound(p: &Problem, cost: &[f64], y: &[f64]) -> f64 {
-    wide_bound(p, cost, (y, &[]))
-}
-
-/// The same of multipliers that are sums of two numbers, the second being what the first lacks. Empty: it lacks nothing.
-pub(crate) fn wide_bound(p: &Problem, cost: &[f64], (y, rest): (&[f64], &[f64])) -> f64 {
     let none = f64::NEG_INFINITY;
     let mut sum = WideSum::default();
     let mut used = y.to_vec();
-    let mut rest = rest.to_vec();
-    rest.resize(y.len(), 0.0);
-    for (i, (y, rest)) in used.iter_mut().zip(&mut rest).enumerate() {
+    for (i, y) in used.iter_mut().enumerate() {
         let side = if *y > 0.0 {
             p.row_lower[i]
         } else {
             p.row_upper[i]
         };
-        // The sign is the first's.
-        if rest.abs() >= y.abs() {
-            *rest = 0.0;
-        }
         // A multiplier without a side to price is left out.
         if side.is_finite() {
             sum.add_product(*y, side);
-            sum.add_product(*rest, side);
         } else {
-            (*y, *rest) = (0.0, 0.0);
+            *y = 0.0;
         }
     }
     for (j, &c) in cost.iter().enumerate() {
         let mut d = WideSum::new(c);
         for (i, a) in p.columns.line(j) {
             d.add_product(-a, used[i]);
-            if rest[i] != 0.0 {
-                d.add_product(-a, rest[i]);
-            }
         }
         let d = d.value();
         let (l, u) = (p.lower[j], p.upper[j]);

@@ -17,7 +17,7 @@ mod linear;
 mod model;
 mod point;
 
-use super::problem::{Entry, Nlp};
+use super::problem::{Entry, Problem};
 use crate::solve::strategy::{Strategies, Strategy};
 use crate::solve::{Budget, Progress};
 use equality::{ANY, Equality, Memory, Working};
@@ -122,12 +122,12 @@ pub(super) struct Run {
 }
 
 /// Runs from the start point. None where the start has no values or derivatives, and where the problem is too large.
-pub(super) fn solve(nlp: &mut dyn Nlp, request: Request<'_>, budget: &Budget) -> Option<Run> {
+pub(super) fn solve(nlp: &mut Problem, request: Request<'_>, budget: &Budget) -> Option<Run> {
     let (n, m) = nlp.size();
     if n + m > LARGEST {
         return None;
     }
-    let mut start = nlp.start().to_vec();
+    let mut start = nlp.start.clone();
     for (x, (&l, &u)) in start
         .iter_mut()
         .zip(nlp.bounds().0.iter().zip(nlp.bounds().1))
@@ -139,7 +139,7 @@ pub(super) fn solve(nlp: &mut dyn Nlp, request: Request<'_>, budget: &Budget) ->
 
 /// The same from a point within the bounds; from the second time on, curvature counts for the unit of the objective.
 fn solve_from(
-    nlp: &mut dyn Nlp,
+    nlp: &mut Problem,
     start: Vec<f64>,
     request: Request<'_>,
     again: bool,
@@ -206,7 +206,7 @@ fn solve_from(
 }
 
 struct Method<'a, 'm> {
-    nlp: &'a mut dyn Nlp,
+    nlp: &'a mut Problem,
     frame: Frame,
     at: Point,
     lambda: Vec<f64>,

@@ -1,7 +1,7 @@
 //! The program at a point, in units: rows divided by their largest entry at the start, the objective by its largest slope.
 
 use crate::solve::lp::form::Sparse;
-use crate::solve::nlp::problem::{Entry, Nlp};
+use crate::solve::nlp::problem::{Entry, Problem};
 use crate::solve::nlp::quadratic::by_rows;
 
 /// Units of rows lie between these.
@@ -37,7 +37,7 @@ pub(super) struct Frame {
 
 impl Frame {
     /// Units are those of the point, that of the objective with its curvature if wanted. None where it has no values or derivatives.
-    pub(super) fn new(nlp: &mut dyn Nlp, x: &[f64], curved: bool) -> Option<Self> {
+    pub(super) fn new(nlp: &mut Problem, x: &[f64], curved: bool) -> Option<Self> {
         let (n, m) = nlp.size();
         let size = |j: usize| x[j].abs().max(1.0);
         let mut row_unit = vec![0.0_f64; m];
@@ -158,7 +158,7 @@ impl Frame {
 }
 
 /// What second derivatives of the objective make of a step as long as its variables.
-fn curvature(nlp: &mut dyn Nlp, x: &[f64]) -> f64 {
+fn curvature(nlp: &mut Problem, x: &[f64]) -> f64 {
     let none = vec![0.0; nlp.size().1];
     let size = |j: usize| x[j].abs().max(1.0);
     let entries = nlp.hessian_entries(x, &none).unwrap_or_default();
@@ -180,7 +180,7 @@ pub(super) struct Values {
 }
 
 impl Values {
-    pub(super) fn at(nlp: &mut dyn Nlp, frame: &Frame, x: &[f64]) -> Option<Self> {
+    pub(super) fn at(nlp: &mut Problem, frame: &Frame, x: &[f64]) -> Option<Self> {
         let f = nlp.objective(x)? / frame.price;
         let mut g = vec![0.0; frame.m];
         nlp.constraints(x, &mut g)?;
@@ -191,7 +191,7 @@ impl Values {
 
 impl Point {
     pub(super) fn new(
-        nlp: &mut dyn Nlp,
+        nlp: &mut Problem,
         frame: &Frame,
         x: Vec<f64>,
         values: Values,
@@ -214,7 +214,7 @@ impl Point {
     }
 
     /// Lower triangle of the Hessian of the Lagrangian, its zeros too; nothing where it has no value.
-    pub(super) fn hessian(&self, nlp: &mut dyn Nlp, frame: &Frame, lambda: &[f64]) -> Vec<Entry> {
+    pub(super) fn hessian(&self, nlp: &mut Problem, frame: &Frame, lambda: &[f64]) -> Vec<Entry> {
         let lambda = frame.multipliers(lambda);
         let mut entries = nlp.hessian_entries(&self.x, &lambda).unwrap_or_default();
         entries.iter_mut().for_each(|e| e.2 /= frame.price);
@@ -251,7 +251,7 @@ impl Point {
     }
 
     /// Whether the objective has become so flat that its slope would not be seen in its unit.
-    pub(super) fn is_level(&self, nlp: &mut dyn Nlp, frame: &Frame, part: f64) -> bool {
+    pub(super) fn is_level(&self, nlp: &mut Problem, frame: &Frame, part: f64) -> bool {
         let slopes = self.gradient.iter().enumerate();
         slopes.fold(0.0_f64, |s, (j, g)| s.max((g * self.unit(j)).abs())) < part
             && curvature(nlp, &self.x) < part * frame.price
