@@ -6,13 +6,12 @@
 //! counts as a singular matrix. Where little fill is to be expected ([`Fill`]), `feral`'s Markowitz
 //! LU is used instead: it peels singletons, and a dense row does no harm.
 
-use super::basis::Basis;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::solvers::Solve;
 use faer::sparse::linalg::amd;
 use faer::sparse::linalg::solvers::{Lu, SymbolicLu};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
-use feral::SparseColMatrix;
+use feral::{LuParams, LuScaling, SparseColMatrix, SparseLu, SparseLuSymbolic};
 
 /// How much the factors of a problem's matrices will fill up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -75,7 +74,12 @@ pub(super) fn faer_solve(lu: &Lu<usize, f64>, x: &mut [f64]) {
 /// A matrix and its LU factors.
 pub(super) struct Factor {
     matrix: SparseColMatrix,
-    basis: Basis,
+    lu: Engine,
+}
+
+enum Engine {
+    Markowitz(Box<SparseLu>),
+    Supernodal(Box<Lu<usize, f64>>),
 }
 
 /// Residual, relative to the right-hand side, above which a solution is not one.
@@ -95,13 +99,33 @@ impl Factor {
         fill: Fill,
         ordering: &mut Ordering,
     ) -> Option<Factor> {
-        let basis = Basis::new(&matrix, fill, ordering)?;
-        Some(Factor { matrix, basis })
+        // A non-finite entry must not reach the factorisation, which compares magnitudes.
+        if matrix.m == 0 || matrix.values.iter().any(|v| !v.is_finite()) {
+            return None;
+        }
+        let lu = match fill {
+            Fill::Heavy => Engine::Supernodal(Box::new(faer_lu(&matrix, ordering)?)),
+            Fill::Light => {
+                let params = LuParams {
+                    scaling: LuScaling::InfNorm,
+                    zero_pivot_tol: 1e-14,
+                    ..LuParams::default()
+                };
+                let lu =
+                    SparseLu::factor(&matrix, &SparseLuSymbolic::natural(matrix.m), params).ok()?;
+                Engine::Markowitz(Box::new(lu))
+            }
+        };
+        Some(Factor { matrix, lu })
     }
 
-    /// The factors alone.
-    pub(super) fn into_basis(self) -> Basis {
-        self.basis
+    /// b ← A⁻¹b.
+    fn solve_once(&mut self, b: &mut [f64]) -> Option<()> {
+        match &mut self.lu {
+            Engine::Markowitz(lu) => lu.ftran(b).ok()?,
+            Engine::Supernodal(lu) => faer_solve(lu, b),
+        }
+        Some(())
     }
 
     /// Solves A x = b; None if the solution does not satisfy the system.
@@ -113,7 +137,7 @@ impl Factor {
     pub(super) fn solve_to(&mut self, b: &[f64], enough: f64) -> Option<Vec<f64>> {
         let norm = b.iter().fold(0.0f64, |a, v| a.max(v.abs()));
         let mut x = b.to_vec();
-        self.basis.solve(&mut x).then_some(())?;
+        self.solve_once(&mut x)?;
         let mut residual = vec![0.0; b.len()];
         for step in 0..3 {
             self.matrix.matvec(&x, &mut residual);
@@ -135,7 +159,7 @@ impl Factor {
             if step == 2 {
                 return (worst <= RESIDUAL_TOLERANCE * norm).then_some(x);
             }
-            self.basis.solve(&mut residual).then_some(())?;
+            self.solve_once(&mut residual)?;
             x.iter_mut().zip(&residual).for_each(|(x, d)| *x += d);
         }
         unreachable!("the loop returns in its last step")

@@ -5,8 +5,8 @@
 
 use feral::SparseColMatrix;
 
-use super::basis::Sparse;
-use super::factor::{Builder, Factor};
+use super::basis::{Basis, Sparse};
+use super::factor::Builder;
 use super::merit::natural_residual;
 use super::run::Run;
 
@@ -54,16 +54,66 @@ pub(super) struct Variable {
 pub(super) fn factorise(
     run: &mut Run,
     problem: &LinearProblem,
-    slot: impl Iterator<Item = Variable>,
-) -> Option<Factor> {
+    slot: &[Variable],
+) -> Option<Basis> {
     run.factorisations += 1;
-    let mut b = Builder::new(problem.q.len());
-    for variable in slot {
-        let column = problem.column(variable);
-        column.into_iter().for_each(|(i, v)| b.push(i, v));
+    let mut b = Builder::new(slot.len());
+    for v in slot {
+        match v.kind {
+            Kind::AtLower => b.push(v.index, -1.0),
+            Kind::AtUpper => b.push(v.index, 1.0),
+            Kind::Between => {
+                let (rows, values) = problem.m.column(v.index);
+                rows.iter().zip(values).for_each(|(&i, &x)| b.push(i, x));
+            }
+        }
         b.end_column();
     }
-    Factor::new(b.finish(), run.fill)
+    Basis::new(&b.finish(), run.fill)
+}
+
+/// Solves with the basis, refines once, and checks the residual.
+pub(super) fn solve_refined(
+    basis: &mut Basis,
+    problem: &LinearProblem,
+    slot: &[Variable],
+    b: &mut [f64],
+) -> bool {
+    let right = b.to_vec();
+    if !basis.solve(b) {
+        return false;
+    }
+    let norm = right.iter().fold(0.0f64, |a, v| a.max(v.abs()));
+    for step in 0..2 {
+        let mut residual = right.clone();
+        for (v, &value) in slot.iter().zip(b.iter()) {
+            match v.kind {
+                Kind::AtLower => residual[v.index] += value,
+                Kind::AtUpper => residual[v.index] -= value,
+                Kind::Between => {
+                    let (rows, values) = problem.m.column(v.index);
+                    rows.iter()
+                        .zip(values)
+                        .for_each(|(&i, &m)| residual[i] -= m * value);
+                }
+            }
+        }
+        let worst = residual.iter().fold(0.0f64, |a, v| {
+            if v.is_nan() {
+                f64::INFINITY
+            } else {
+                a.max(v.abs())
+            }
+        });
+        if worst <= 1e-15 * norm {
+            return true;
+        }
+        if step == 1 || !basis.solve(&mut residual) {
+            return worst <= 1e-6 * norm.max(1e-300);
+        }
+        b.iter_mut().zip(&residual).for_each(|(x, d)| *x += d);
+    }
+    true
 }
 
 /// Whether y solves the linear problem, to a tolerance that says the path did not lie.

@@ -30,7 +30,7 @@
 //! other d_hole is zero, so both moves are needed.
 
 use super::basis::{Basis, Sparse};
-use super::linear::{Kind, LinearProblem, Variable, factorise, solves};
+use super::linear::{Kind, LinearProblem, Variable, factorise, solve_refined, solves};
 use super::random::Random;
 use super::run::{Run, Stop};
 
@@ -318,7 +318,7 @@ impl<'a> Path<'a> {
     /// Fresh factors, y and p.
     fn refactor(&mut self, run: &mut Run) -> bool {
         self.basis = None;
-        let Some(mut factor) = factorise(run, self.problem, self.slot.iter().copied()) else {
+        let Some(mut basis) = factorise(run, self.problem, &self.slot) else {
             return false;
         };
         // b = r − q − Mx + w − v over the variables that are in no slot.
@@ -334,17 +334,21 @@ impl<'a> Path<'a> {
         for (k, b) in b.iter_mut().enumerate() {
             *b = self.r[k] - self.problem.q[k] - *b + rest[k][1] - rest[k][2];
         }
-        let (Some(y), Some(p)) = (factor.solve(&b), factor.solve(&self.r)) else {
+        let mut p = self.r.clone();
+        if !solve_refined(&mut basis, self.problem, &self.slot, &mut b)
+            || !solve_refined(&mut basis, self.problem, &self.slot, &mut p)
+        {
             return false;
-        };
-        (self.y, self.p) = (y, p);
+        }
+        self.y = b;
+        self.p = p;
         if let Some(h) = self.hole {
             // The rounding error goes into the place where the reference rests, not into t.
             let v = self.slot[h];
             self.rest[v.index][v.kind as usize] += self.y[h] - self.t * self.p[h];
             self.y[h] = self.t * self.p[h];
         }
-        self.basis = Some(factor.into_basis());
+        self.basis = Some(basis);
         true
     }
 
@@ -628,9 +632,13 @@ impl<'a> Path<'a> {
 
     /// The solution from the final basis alone, without the covering vector.
     fn solution(&self, run: &mut Run) -> Option<Vec<f64>> {
-        let all = self.kind.iter().enumerate();
-        let slot = all.map(|(index, &kind)| Variable { index, kind });
-        let mut factor = factorise(run, self.problem, slot)?;
+        let slot: Vec<Variable> = self
+            .kind
+            .iter()
+            .enumerate()
+            .map(|(index, &kind)| Variable { index, kind })
+            .collect();
+        let mut basis = factorise(run, self.problem, &slot)?;
         let mut x: Vec<f64> = (0..self.n)
             .map(|k| match self.kind[k] {
                 Kind::Between => 0.0,
@@ -643,7 +651,9 @@ impl<'a> Path<'a> {
         for (b, q) in b.iter_mut().zip(self.problem.q) {
             *b = -q - *b;
         }
-        let b = factor.solve(&b)?;
+        if !solve_refined(&mut basis, self.problem, &slot, &mut b) {
+            return None;
+        }
         for k in 0..self.n {
             if self.kind[k] == Kind::Between {
                 x[k] = b[k].max(self.problem.lower[k]).min(self.problem.upper[k]);
