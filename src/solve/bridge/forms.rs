@@ -91,7 +91,9 @@ impl Function {
         match self {
             Self::Quadratic(entries) => {
                 let terms = entries.iter();
-                let sum: f64 = terms.map(|&(i, j, h)| h * x[i as usize] * x[j as usize]).sum();
+                let sum: f64 = terms
+                    .map(|&(i, j, h)| h * x[i as usize] * x[j as usize])
+                    .sum();
                 Some(0.5 * sum)
             }
             Self::Other(evaluator) => {
@@ -164,7 +166,9 @@ impl Form {
                 side: (next - f) * low - f,
             })
         };
-        ((x - OFF).floor() as i64..=(x + OFF).floor() as i64).map(line).collect()
+        ((x - OFF).floor() as i64..=(x + OFF).floor() as i64)
+            .map(line)
+            .collect()
     }
 
     /// Tangents that are near at a point.
@@ -235,22 +239,27 @@ impl Split {
                 nonlinear,
             } = term.parts(coefficient);
             builder.rows.rhs[row] -= constant;
-            builder.entries.extend(linear.into_iter().map(|(j, a)| (row, j, a)));
+            builder
+                .entries
+                .extend(linear.into_iter().map(|(j, a)| (row, j, a)));
             parts.entry(row).or_default().extend(nonlinear);
         }
         let (mut direction, mut relations) = (directions(instance), None);
         let mut forms = Vec::new();
         for (row, parts) in parts {
-            let known: Vec<_> = parts.iter().map(|p| composed(&p.1, &instance.columns)).collect();
+            let known: Vec<_> = parts
+                .iter()
+                .map(|p| composed(&p.1, &instance.columns))
+                .collect();
             let fits = |way: f64| {
-                let fit = |(p, k): (&(f64, Term), &Composed)| {
-                    k.degree <= 2 || k.times(way * p.0).convex
-                };
+                let fit =
+                    |(p, k): (&(f64, Term), &Composed)| k.degree <= 2 || k.times(way * p.0).convex;
                 parts.iter().zip(&known).all(fit)
             };
             if direction[row] == 0.0 {
-                let (directions, relaxed) = relations
-                    .get_or_insert_with(|| (Directions::new(instance), instance.rows.relation.clone()));
+                let (directions, relaxed) = relations.get_or_insert_with(|| {
+                    (Directions::new(instance), instance.rows.relation.clone())
+                });
                 let may = |way: &f64| fits(*way) && directions.can_relax(row, *way > 0.0);
                 direction[row] = [1.0, -1.0].into_iter().find(may)?;
                 relaxed[row] = match direction[row] > 0.0 {

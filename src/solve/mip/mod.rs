@@ -28,6 +28,7 @@ use super::bridge::binaries::{Replaced, without_binary_products};
 use super::bridge::forms::{WithForms, with_forms};
 use super::discrete::{Mip, model, propagate};
 use super::lp;
+use super::lp::Ended;
 use super::lp::form::Form;
 use super::nlp::convex::{Shape, shape};
 use super::strategy::Strategy;
@@ -386,12 +387,7 @@ fn convex_search(
     let Some(root) = tangents.best(&instance.columns.level, control) else {
         return Ok(None);
     };
-    let mut mip = Mip::new(
-        form.problem.clone(),
-        linear,
-        &form.columns,
-        aim.priorities,
-    );
+    let mut mip = Mip::new(form.problem.clone(), linear, &form.columns, aim.priorities);
     tangents.tighten(&mut mip, &root);
     let begin = Begin {
         settings: Some(settings),
@@ -400,8 +396,12 @@ fn convex_search(
     };
     let mut found = searched(linear, &form, &mip, aim, begin, control);
     // degenerate: the nonlinear solver at every node may know more
-    let given_up = found.incomplete || !found.exact;
-    if given_up && matches!(found.end, End::Complete | End::Gap) {
+    let given_up = match found.end {
+        End::Complete | End::Gap => found.incomplete || !found.exact,
+        End::Stopped(Ended::Failed) => true,
+        _ => false,
+    };
+    if given_up {
         return Ok(None);
     }
     found.keep(instance.column_count());
@@ -409,9 +409,9 @@ fn convex_search(
     // what a relaxed equation lacks is made up for
     if let (Some(_), Some(x)) = (&convex.relaxed, &found.x) {
         let outcome = solution(task, x, settings, control.budget);
-        let value = instance.objective.map_or(0.0, |o| {
-            o.sense.sign() * outcome.level[o.column as usize]
-        });
+        let value = instance
+            .objective
+            .map_or(0.0, |o| o.sense.sign() * outcome.level[o.column as usize]);
         if outcome.claim == Claim::Unfinished || !is_same(value, found.value) {
             return Ok(None);
         }

@@ -11,6 +11,7 @@ use super::presolve::Reduced;
 use super::relaxation::{Control, Relaxation, Solved};
 use crate::solve::ModelStatus;
 use crate::solve::bridge::forms::{Form, Tangent};
+use crate::solve::lp::Ended;
 use crate::solve::lp::simplex::{Basis, State};
 use std::rc::Rc;
 
@@ -273,8 +274,11 @@ impl Relaxation for Outer<'_> {
         let (mut rounds, mut before) = (0, f64::NEG_INFINITY);
         loop {
             let solved = self.linear.solve(cutoff, control);
-            let Solved::Value(value) = solved else {
-                return solved;
+            let value = match solved {
+                Solved::Value(value) => value,
+                // tangents have become too much alike
+                Solved::Failed => return Solved::Stopped(Ended::Failed),
+                _ => return solved,
             };
             self.point = self.linear.x().to_vec();
             let whole = self.mip.is_discrete(&self.point);

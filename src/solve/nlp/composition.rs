@@ -153,7 +153,11 @@ pub fn composed(term: &Term, columns: &Columns) -> Composed {
         let begin = a.first().map_or(place, |a| a.1);
         let ranges: Vec<Interval> = a.iter().map(|a| a.0.range).collect();
         let range = operation(*op, &ranges, at, constants);
-        let degree = if a.iter().all(|a| a.0.degree == 0) { 0 } else { 3 };
+        let degree = if a.iter().all(|a| a.0.degree == 0) {
+            0
+        } else {
+            3
+        };
         let other = Composed::unknown(degree, range);
         let sum = |a: &[(Composed, usize)]| {
             let zero = Composed::affine(0, Interval::point(0.0));
@@ -188,17 +192,16 @@ pub fn composed(term: &Term, columns: &Columns) -> Composed {
                 }
                 _ => other,
             },
-            (
-                Op::Power | Op::Call(Function::RPower | Function::VcPower, _),
-                [(a, _), (p, _)],
-            ) => match p.number() {
-                Some(p) => {
-                    let power = operation(Op::Power, &ranges, at, constants);
-                    let squared = if p == 2.0 && a.is_affine() { 2 } else { degree };
-                    a.under(Graph::power(p, a.range), squared, power)
+            (Op::Power | Op::Call(Function::RPower | Function::VcPower, _), [(a, _), (p, _)]) => {
+                match p.number() {
+                    Some(p) => {
+                        let power = operation(Op::Power, &ranges, at, constants);
+                        let squared = if p == 2.0 && a.is_affine() { 2 } else { degree };
+                        a.under(Graph::power(p, a.range), squared, power)
+                    }
+                    None => other,
                 }
-                None => other,
-            },
+            }
             (Op::Call(f, _), [(a, _)]) => match f {
                 Function::Exp => a.under(
                     Graph {
@@ -257,7 +260,11 @@ fn product(factors: &[(Composed, usize)], term: &Term, place: usize, other: Comp
             };
             let known = Composed {
                 convex: is_log_of(second, first) || is_log_of(first, second),
-                degree: if affine(first) && affine(second) { 2 } else { 3 },
+                degree: if affine(first) && affine(second) {
+                    2
+                } else {
+                    3
+                },
                 ..other
             };
             known.times(number)
@@ -312,12 +319,18 @@ mod tests {
                 "concave",
             ),
             (
-                Term::call(Function::RPower, [1.0 + y.clone().powi(2), Term::constant(1.5)]),
+                Term::call(
+                    Function::RPower,
+                    [1.0 + y.clone().powi(2), Term::constant(1.5)],
+                ),
                 "convex",
             ),
             // where the base is not above 0 the power does not exist: no convex set of points is left
             (
-                Term::call(Function::RPower, [y.clone().powi(2) - 1.0, Term::constant(1.5)]),
+                Term::call(
+                    Function::RPower,
+                    [y.clone().powi(2) - 1.0, Term::constant(1.5)],
+                ),
                 "neither",
             ),
             (call(Function::Sin, &x), "neither"),
