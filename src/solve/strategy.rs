@@ -208,9 +208,9 @@ strategies! {
             "20 000 columns, and 5 nodes of the nonlinear program for a first solution (500, then 20 000 of the linear one, with integers in bits)",
             "Fortet 1960, Watters 1967, McCormick 1976, Adams & Sherali 1986";
         OuterApproximation "outer_approximation",
-            "convex quadratic: tangents at the nodes of a tree over linear programs, with those of the perspective where a binary switches columns off",
-            "a column and a tangent for each block of columns that the Hessians join",
-            "Quesada & Grossmann 1992, Frangioni & Gentile 2006";
+            "convex terms (quadratic, or by rules of composition): tangents at the nodes of a tree over linear programs, with those of the perspective where a binary switches columns off",
+            "a column and a tangent for each term, or block of columns that the Hessians join",
+            "Quesada & Grossmann 1992, Frangioni & Gentile 2006, Grant, Boyd & Ye 2006";
         OrbitalBranching "orbital_branching",
             "columns that are alike: where a binary one is branched down, so are those that permutations make of it",
             "10⁷ entries of rows, and each of them 20 times",

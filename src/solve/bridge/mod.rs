@@ -3,23 +3,24 @@
 //! * [`binaries`]: products with a binary factor, as columns and rows, for programs with discrete columns;
 //! * [`elastic`]: rows that may be violated at a price;
 //! * [`epigraph`]: max, min and abs where they stand convexly, as columns and rows;
+//! * [`forms`]: convex terms as columns, for programs with discrete columns;
 //! * [`inner_sums`]: long sums inside functions, as columns and rows;
 //! * [`least_squares`]: a sum of as many squares as there are variables as equations;
 //! * [`kkt`]: the optimality conditions of a linear program as a complementarity problem;
 //! * [`products`]: pairs as nonlinear rows, for programs with equilibrium constraints;
-//! * [`squares`]: convex quadratic forms as columns, for programs with discrete columns;
 //! * [`triangular`]: columns that equations give one after the other, as numbers.
 
 pub mod binaries;
 mod builder;
+mod direction;
 pub mod elastic;
 pub mod epigraph;
+pub mod forms;
 pub mod inner_sums;
 pub mod kkt;
 pub mod least_squares;
 mod parts;
 pub mod products;
-pub mod squares;
 pub mod triangular;
 
 use super::Settings;

@@ -80,6 +80,12 @@ impl Term {
         }
     }
 
+    /// Whether it depends on its columns by one affine expression.
+    pub(super) fn is_of_one_sum(&self) -> bool {
+        let leaf = |op: &&Op| matches!(op, Op::Var(_) | Op::Affine { .. });
+        self.ops.iter().filter(leaf).count() == 1
+    }
+
     /// Whether a function with kinks stands anywhere in it.
     pub(super) fn has_kink(&self) -> bool {
         has_kink(&self.ops)

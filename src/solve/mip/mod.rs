@@ -25,9 +25,10 @@ pub use tree::{Aim, Record};
 use super::answer::subproblem;
 use super::backend::{About, Backend, Replied, Reply, Supports, Task, Terms};
 use super::bridge::binaries::{Replaced, without_binary_products};
-use super::bridge::squares::with_squares;
+use super::bridge::forms::{WithForms, with_forms};
 use super::discrete::{Mip, model, propagate};
 use super::lp;
+use super::lp::Ended;
 use super::lp::form::Form;
 use super::nlp::convex::{Shape, shape};
 use super::strategy::Strategy;
@@ -140,9 +141,18 @@ fn search(task: &Task, settings: &Settings, budget: &Budget) -> Result<Reply, So
         false => {
             let mut control = Control::new(budget);
             let inner = Task { instance, ..*task };
-            let found = match convex_search(&inner, aim, settings, &mut control)? {
+            let mut convex = match task.has_pairs() {
+                true => None,
+                false => with_forms(instance),
+            };
+            let found = match &mut convex {
+                Some(convex) => convex_search(&inner, convex, aim, settings, &mut control)?,
+                None => None,
+            };
+            let known = convex.is_some_and(|c| c.relaxed.is_none());
+            let found = match found {
                 Some(found) => found,
-                None => nonlinear_search(&inner, aim, settings, &mut control)?,
+                None => nonlinear_search(&inner, known, aim, settings, &mut control)?,
             };
             budget.spend(control.iterations);
             (found, control.iterations)
@@ -192,7 +202,7 @@ fn replaced(task: &Task, aim: Aim, settings: &Settings, budget: &Budget) -> Opti
     };
     let seconds = budget.seconds_left() / 4.0;
     let first = budget.within(seconds, u64::MAX, |budget| {
-        nonlinear_search(task, aim, settings, &mut Control::new(budget))
+        nonlinear_search(task, false, aim, settings, &mut Control::new(budget))
     });
     if let Some(x) = first.ok().and_then(|found| found.x) {
         replaced.start_at(&x);
@@ -218,7 +228,7 @@ pub(super) fn concluded(task: &Task, found: Found, settings: &Settings, budget: 
         found.bound
     };
     let proved = match found.end {
-        End::Complete => !found.incomplete && value - found.value <= SAME * value.abs().max(1.0),
+        End::Complete => !found.incomplete && is_same(value, found.value),
         _ => value - bound <= PROVED * value.abs().max(1e-9),
     };
     outcome.claim = match (complete, &found.end) {
@@ -344,29 +354,25 @@ fn searched(
     found
 }
 
-/// The search of a convex quadratic program by tangents. None: it is none, tangents would be many, or its relaxation has no best
-/// point.
+/// The search of a convex program by tangents. None: tangents would be many, its relaxation has no best point, or that of
+/// another search is likely to be better.
 fn convex_search(
     task: &Task,
+    convex: &mut WithForms,
     aim: Aim,
     settings: &Settings,
     control: &mut Control,
 ) -> Result<Option<Found>, SolveError> {
-    let instance = task.instance;
-    let convex = !task.has_pairs() && matches!(shape(instance), Shape::ConvexQuadratic { .. });
-    if !convex {
-        return Ok(None);
-    }
-    let Some(squared) = with_squares(instance) else {
-        return Ok(None);
-    };
-    let small = squared.squares.iter().all(|s| s.is_small());
+    let small = convex.forms.iter().all(|f| f.is_small());
     if !small || !settings.runs(Strategy::OuterApproximation) {
         return Ok(None);
     }
-    let (_, nonlinear) = relaxed(task, aim, settings, control)?;
-    let form = Form::new(&squared.instance)?;
-    let mut convex = Convex {
+    let instance = convex.relaxed.as_ref().unwrap_or(task.instance);
+    let inner = Task { instance, ..*task };
+    let (linear, forms) = (&convex.instance, &mut convex.forms);
+    let (_, nonlinear) = relaxed(&inner, true, aim, settings, control)?;
+    let form = Form::new(linear)?;
+    let mut tangents = Convex {
         nonlinear,
         discrete: instance
             .columns
@@ -374,38 +380,49 @@ fn convex_search(
             .iter()
             .map(|k| *k != ColumnKind::Continuous)
             .collect(),
-        squares: &squared.squares,
+        forms,
         numbers: &form.columns,
+        lost: false,
     };
-    let Some(root) = convex.best(&instance.columns.level, control) else {
+    let Some(root) = tangents.best(&instance.columns.level, control) else {
         return Ok(None);
     };
-    let mut mip = Mip::new(
-        form.problem.clone(),
-        &squared.instance,
-        &form.columns,
-        aim.priorities,
-    );
-    convex.tighten(&mut mip, &root);
+    let mut mip = Mip::new(form.problem.clone(), linear, &form.columns, aim.priorities);
+    tangents.tighten(&mut mip, &root);
     let begin = Begin {
         settings: Some(settings),
-        convex: Some(convex),
+        convex: Some(tangents),
         ..Begin::default()
     };
-    let mut found = searched(&squared.instance, &form, &mip, aim, begin, control);
+    let mut found = searched(linear, &form, &mip, aim, begin, control);
     // degenerate: the nonlinear solver at every node may know more
-    let given_up = found.incomplete || !found.exact;
-    if given_up && matches!(found.end, End::Complete | End::Gap) {
+    let given_up = match found.end {
+        End::Complete | End::Gap => found.incomplete || !found.exact,
+        End::Stopped(Ended::Failed) => true,
+        _ => false,
+    };
+    if given_up {
         return Ok(None);
     }
     found.keep(instance.column_count());
     found.relaxed = true;
+    // what a relaxed equation lacks is made up for
+    if let (Some(_), Some(x)) = (&convex.relaxed, &found.x) {
+        let outcome = solution(task, x, settings, control.budget);
+        let value = instance
+            .objective
+            .map_or(0.0, |o| o.sense.sign() * outcome.level[o.column as usize]);
+        if outcome.claim == Claim::Unfinished || !is_same(value, found.value) {
+            return Ok(None);
+        }
+    }
     Ok(Some(found))
 }
 
-/// The linear rows of a nonlinear program, and its relaxation.
+/// The linear rows of a nonlinear program that is known to be convex or not, and its relaxation.
 fn relaxed(
     task: &Task,
+    known: bool,
     aim: Aim,
     settings: &Settings,
     control: &mut Control,
@@ -425,19 +442,20 @@ fn relaxed(
             )
         })
     })?;
-    let mut relaxation = Nonlinear::new(&first, relaxed, task.choice, settings);
+    let mut relaxation = Nonlinear::new(&first, relaxed, task.choice, settings, known);
     relaxation.convex = !task.has_pairs();
     Ok((mip, relaxation))
 }
 
-/// The search of a nonlinear program.
+/// The search of a nonlinear program, which is known to be convex or not.
 fn nonlinear_search(
     task: &Task,
+    known: bool,
     aim: Aim,
     settings: &Settings,
     control: &mut Control,
 ) -> Result<Found, SolveError> {
-    let (mip, relaxation) = relaxed(task, aim, settings, control)?;
+    let (mip, relaxation) = relaxed(task, known, aim, settings, control)?;
     let units = Units {
         price: 1.0,
         offset: 0.0,
@@ -507,8 +525,10 @@ fn solution(task: &Task, x: &[f64], settings: &Settings, budget: &Budget) -> Out
     Outcome::unfinished(NAME, x.to_vec(), rows)
 }
 
-/// The value of a solution with its integers rounded may differ from the search's by this, relative.
-const SAME: f64 = 1e-6;
+/// Whether the value of a solution with its integers rounded is not above the search's, but for 1e-6 of it.
+fn is_same(value: f64, searched: f64) -> bool {
+    value - searched <= 1e-6 * value.abs().max(1.0)
+}
 
 /// Seconds for the marginals of a solution when the time is used up.
 const GRACE: f64 = 1.5;

@@ -10,7 +10,6 @@ use crate::model::problem_type::ProblemType;
 use crate::solve::answer::{Answer, subproblem};
 use crate::solve::backend::Task;
 use crate::solve::lp::Ended;
-use crate::solve::nlp::convex::{Shape, shape};
 use crate::solve::{ModelStatus, Settings, SolverStatus};
 use std::rc::Rc;
 
@@ -46,12 +45,13 @@ const AGAIN: u32 = 50;
 const ELSEWHERE: u64 = 10_000;
 
 impl Nonlinear {
-    /// For an instance.
+    /// For an instance that is known to be convex or not.
     pub fn new(
         instance: &Instance,
         using: ProblemType,
         choice: Option<&str>,
         settings: &Settings,
+        known: bool,
     ) -> Self {
         let mut relaxed = instance.clone();
         relaxed.columns.kind.fill(ColumnKind::Continuous);
@@ -73,7 +73,7 @@ impl Nonlinear {
             settings: settings.clone(),
             first: level.clone(),
             point: Rc::new(level.clone()),
-            known: matches!(shape(instance), Shape::ConvexQuadratic { .. }),
+            known,
             convex: true,
             rooted: false,
             again: 0,

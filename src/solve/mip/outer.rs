@@ -1,4 +1,4 @@
-//! The relaxation of a convex quadratic program by tangents: linear programs at the nodes (Quesada & Grossmann 1992).
+//! The relaxation of a convex program by tangents: linear programs at the nodes (Quesada & Grossmann 1992).
 //!
 //! A node's point gets the tangents that it violates. Where its discrete columns have values that they may have, that is
 //! repeated until it violates none; and as that may take long, tangents at the best point with these values, from the nonlinear
@@ -10,7 +10,8 @@ use super::nonlinear::Nonlinear;
 use super::presolve::Reduced;
 use super::relaxation::{Control, Relaxation, Solved};
 use crate::solve::ModelStatus;
-use crate::solve::bridge::squares::{Square, Tangent};
+use crate::solve::bridge::forms::{Form, Tangent};
+use crate::solve::lp::Ended;
 use crate::solve::lp::simplex::{Basis, State};
 use std::rc::Rc;
 
@@ -30,7 +31,7 @@ const ROOT_ROUNDS: usize = 30;
 const ROUNDS: usize = 100;
 const OWN_ROUNDS: usize = 3;
 
-/// Rows for each square, on average, from which on only points with decided columns get more.
+/// Rows for each form, on average, from which on only points with decided columns get more.
 const MAX_TANGENTS: usize = 12;
 
 /// From the columns of a search to those of the linear instance that it began with, and back.
@@ -62,15 +63,17 @@ pub(super) struct Convex<'s> {
     pub nonlinear: Nonlinear,
     /// By column of it: discrete.
     pub discrete: Vec<bool>,
-    pub squares: &'s [Square],
+    pub forms: &'s mut [Form],
     /// Columns of the linear instance, of those of the linear program.
     pub numbers: &'s [u32],
+    /// The nonlinear solver has left a program without an answer.
+    pub lost: bool,
 }
 
 impl<'s> Convex<'s> {
     /// The way from a search over what presolve left.
     pub(super) fn way(&self, reduced: &Reduced, scale: &[f64]) -> Way {
-        let mut fixed = vec![0.0; self.discrete.len() + self.squares.len()];
+        let mut fixed = vec![0.0; self.discrete.len() + self.forms.len()];
         let values = reduced.restore(&vec![0.0; scale.len()]);
         for (&j, v) in self.numbers.iter().zip(values) {
             fixed[j as usize] = v;
@@ -83,30 +86,38 @@ impl<'s> Convex<'s> {
         }
     }
 
-    /// The best point of the program for the present bounds, with the values of the squares.
+    /// The best point of the program for the present bounds, with the values of the forms.
     pub(super) fn best(&mut self, level: &[f64], control: &mut Control) -> Option<Vec<f64>> {
         use ModelStatus as S;
         let answer = self.nonlinear.answer(level, u64::MAX, control)?;
-        let solved = matches!(answer.status, S::Optimal | S::LocallyOptimal);
-        solved.then(|| self.with_values(answer.outcome.level))
+        match answer.status {
+            S::Optimal | S::LocallyOptimal => Some(self.with_values(answer.outcome.level)),
+            S::Infeasible | S::LocallyInfeasible => None,
+            _ => {
+                self.lost = true;
+                None
+            }
+        }
     }
 
     fn with_values(&self, mut level: Vec<f64>) -> Vec<f64> {
-        level.resize(self.discrete.len() + self.squares.len(), 0.0);
-        for s in self.squares {
-            level[s.column as usize] = s.value(&level);
+        level.resize(self.discrete.len() + self.forms.len(), 0.0);
+        for f in self.forms.iter() {
+            // of a point that satisfies the program it has a value
+            level[f.column as usize] = f.value(&level).unwrap_or(0.0);
         }
         level
     }
 
     /// Tangents at a point become rows, and presolve is told which columns will stand in more of them.
-    pub(super) fn tighten(&self, mip: &mut Mip, at: &[f64]) {
+    pub(super) fn tighten(&mut self, mip: &mut Mip, at: &[f64]) {
+        self.forms.iter_mut().for_each(|f| f.stay_inside(at));
         let mut place = vec![usize::MAX; at.len()];
         for (k, &j) in self.numbers.iter().enumerate() {
             place[j as usize] = k;
         }
         let p = &mut mip.problem;
-        for tangent in self.squares.iter().flat_map(|s| s.tangents(at)) {
+        for tangent in self.forms.iter().flat_map(|s| s.tangents(at)) {
             let entry = |(j, a): (u32, f64)| (place[j as usize], a);
             let mut terms: Vec<(usize, f64)> = tangent.terms.into_iter().map(entry).collect();
             terms.sort_unstable_by_key(|t| t.0);
@@ -115,7 +126,7 @@ impl<'s> Convex<'s> {
             p.row_upper.push(tangent.side);
         }
         p.columns = p.rows.transpose(p.n());
-        let all = self.squares.iter().flat_map(Square::all_columns);
+        let all = self.forms.iter().flat_map(Form::all_columns);
         mip.held = all.map(|j| place[j as usize] as u32).collect();
     }
 }
@@ -190,13 +201,16 @@ impl<'s> Outer<'s> {
 
     /// Tangents at a point of the program that the relaxation's point violates by more than a part of the form's value.
     fn violated(&self, at: &[f64], x: &[f64], tolerance: f64) -> Vec<Cut> {
-        let squares = self.convex.squares;
-        let values: Vec<f64> = squares.iter().map(|s| s.value(x)).collect();
+        let forms = &self.convex.forms;
+        let values: Vec<f64> = forms
+            .iter()
+            .map(|f| f.value(x).map_or(0.0, f64::abs))
+            .collect();
         let largest = values.iter().copied().fold(1e-6, f64::max);
         let mut cuts = Vec::new();
-        for (square, value) in squares.iter().zip(values) {
+        for (form, value) in forms.iter().zip(values) {
             let least = tolerance * value.max(1e-3 * largest);
-            let tangents = square.tangents(at).into_iter();
+            let tangents = form.tangents(at).into_iter();
             let new = tangents.filter(|t| t.violation(x) > least);
             cuts.extend(new.map(|t| self.cut(t)));
         }
@@ -260,8 +274,11 @@ impl Relaxation for Outer<'_> {
         let (mut rounds, mut before) = (0, f64::NEG_INFINITY);
         loop {
             let solved = self.linear.solve(cutoff, control);
-            let Solved::Value(value) = solved else {
-                return solved;
+            let value = match solved {
+                Solved::Value(value) => value,
+                // tangents have become too much alike
+                Solved::Failed => return Solved::Stopped(Ended::Failed),
+                _ => return solved,
             };
             self.point = self.linear.x().to_vec();
             let whole = self.mip.is_discrete(&self.point);
@@ -269,7 +286,7 @@ impl Relaxation for Outer<'_> {
             let most = match (whole, self.rooted) {
                 (true, _) => ROUNDS,
                 (_, false) => ROOT_ROUNDS,
-                _ if rows > MAX_TANGENTS * self.convex.squares.len() => 0,
+                _ if rows > MAX_TANGENTS * self.convex.forms.len() => 0,
                 _ => 1,
             };
             let slow = !whole && value - before <= 1e-5 * value.abs();
@@ -341,6 +358,6 @@ impl Relaxation for Outer<'_> {
     }
 
     fn is_exact(&self) -> bool {
-        self.exact
+        self.exact && !self.convex.lost
     }
 }

@@ -6,6 +6,7 @@
 //! KKT residuals of the instance, tries again where they are not small, and says what is known.
 
 mod attempts;
+pub mod composition;
 pub mod consistent;
 pub mod convex;
 pub mod curvature;

@@ -65,37 +65,46 @@ fn range(terms: &KernelTerms, at: &[Interval], constants: &[f64]) -> Interval {
     let mut stack: Vec<Interval> = Vec::new();
     for op in &terms.kernel.ops {
         let a = stack.split_off(stack.len().saturating_sub(op.arguments()));
-        let value = match (*op, a.as_slice()) {
-            (Op::Const(k), _) => Interval::point(constants[k as usize]),
-            (Op::Var(v), _) => at[v as usize],
-            (
-                Op::Affine {
-                    constant,
-                    variable,
-                    terms,
-                },
-                _,
-            ) => {
-                let (c, v) = (constant as usize, variable as usize);
-                let each = (0..terms as usize).map(|m| at[v + m] * constants[c + 1 + m]);
-                each.fold(Interval::point(constants[c]), |s, t| s + t)
-            }
-            (Op::Add | Op::AddN(_), a) => a.iter().fold(Interval::point(0.0), |s, &t| s + t),
-            (Op::Multiply | Op::MultiplyN(_), a) => {
-                a.iter().fold(Interval::point(1.0), |s, &t| s * t)
-            }
-            (Op::Subtract, &[a, b]) => a - b,
-            (Op::Negate, &[a]) => -a,
-            (Op::PowerInt(k), &[a]) => power(a, k),
-            (Op::Divide, &[a, b]) => a * power(b, -1),
-            (Op::Power, &[a, b]) if b.low == b.high => real_power(a, b.low),
-            (Op::Call(f, _), &[a]) => function(f, a),
-            _ => Interval::ALL,
-        };
-        let known = !value.low.is_nan() && !value.high.is_nan();
-        stack.push(if known { value } else { Interval::ALL });
+        stack.push(operation(*op, &a, at, constants));
     }
     stack.pop().unwrap_or(Interval::ALL)
+}
+
+/// Bounds of an operation over bounds of its arguments and of the variables.
+pub(super) fn operation(op: Op, a: &[Interval], at: &[Interval], constants: &[f64]) -> Interval {
+    let value = match (op, a) {
+        (Op::Const(k), _) => Interval::point(constants[k as usize]),
+        (Op::Var(v), _) => at[v as usize],
+        (
+            Op::Affine {
+                constant,
+                variable,
+                terms,
+            },
+            _,
+        ) => {
+            let (c, v) = (constant as usize, variable as usize);
+            let each = (0..terms as usize).map(|m| at[v + m] * constants[c + 1 + m]);
+            each.fold(Interval::point(constants[c]), |s, t| s + t)
+        }
+        (Op::Add | Op::AddN(_), a) => a.iter().fold(Interval::point(0.0), |s, &t| s + t),
+        (Op::Multiply | Op::MultiplyN(_), a) => a.iter().fold(Interval::point(1.0), |s, &t| s * t),
+        (Op::Subtract, &[a, b]) => a - b,
+        (Op::Negate, &[a]) => -a,
+        (Op::PowerInt(k), &[a]) => power(a, k),
+        (Op::Divide, &[a, b]) => a * power(b, -1),
+        (Op::Power | Op::Call(Function::RPower | Function::VcPower, _), &[a, b])
+            if b.low == b.high =>
+        {
+            real_power(a, b.low)
+        }
+        (Op::Call(f, _), &[a]) => function(f, a),
+        _ => Interval::ALL,
+    };
+    match value.low.is_nan() || value.high.is_nan() {
+        true => Interval::ALL,
+        false => value,
+    }
 }
 
 /// From the one value to the other, and what rounding may have taken off.

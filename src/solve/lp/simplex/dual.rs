@@ -12,6 +12,9 @@ use crate::solve::lp::form::proves_infeasible;
 use std::cmp::{Ordering, Reverse};
 use std::collections::BinaryHeap;
 
+/// Times that the same violations come back with a fresh factor before the numbers are said to have broken down.
+const REPEATS: u32 = 20;
+
 /// The box of a free variable where those with one bound have 1: it should be basic.
 const FREE: f64 = 1000.0;
 
@@ -92,6 +95,7 @@ impl Simplex {
         // Everything is looked at anew.
         let mut renewed = None;
         let mut largest = 0.0f64;
+        let mut cycle = Cycle::default();
         loop {
             if self.iterations.is_multiple_of(32)
                 && let Some(why) = stop(self.iterations)
@@ -118,6 +122,9 @@ impl Simplex {
                 (0..self.n + self.m).for_each(|j| self.side[j] = self.side_of(j));
             }
             self.touched.clear();
+            if fresh && cycle.repeats(violations.iter().sum()) > REPEATS {
+                return Stop::Ended(Ended::Failed);
+            }
             let own_bounds = || self.work_lower == self.lower;
             if self.most_work.is_finite() && self.iterations.is_multiple_of(16) && own_bounds() {
                 let sum: f64 = violations.iter().map(|v| v.sqrt()).sum();
@@ -521,6 +528,28 @@ impl Ord for Ratio {
 impl PartialOrd for Ratio {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
+    }
+}
+
+/// Looks for a sum that comes back again and again (Brent 1980).
+#[derive(Default)]
+struct Cycle {
+    seen: f64,
+    count: u64,
+    renew_at: u64,
+    repeats: u32,
+}
+
+impl Cycle {
+    /// How often this sum was there since it was noted.
+    fn repeats(&mut self, sum: f64) -> u32 {
+        self.count += 1;
+        self.repeats += u32::from(sum == self.seen && sum > 0.0);
+        if self.count > self.renew_at {
+            (self.seen, self.repeats) = (sum, 0);
+            self.renew_at = 2 * self.count + 100;
+        }
+        self.repeats
     }
 }
 

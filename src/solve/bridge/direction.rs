@@ -4,7 +4,7 @@
 //! lower y until the equation holds.
 
 use crate::model::builder::Term;
-use crate::model::instance::{Function, Instance, Op, Relation};
+use crate::model::instance::{ColumnKind, Function, Instance, Op, Relation};
 use crate::solve::bridge::parts::expressions;
 use std::collections::BTreeMap;
 
@@ -102,11 +102,15 @@ impl<'i> Directions<'i> {
             return false;
         }
         let instance = self.instance;
-        for (j, a) in instance.matrix.row(row) {
-            let fixed = instance.columns.lower[j] == instance.columns.upper[j];
-            if fixed || self.inside[row].contains(&(j as u32)) {
-                continue;
-            }
+        let c = &instance.columns;
+        let free = |j: usize| c.kind[j] == ColumnKind::Continuous && c.lower[j] != c.upper[j];
+        let linear = instance.matrix.row(row).filter(|e| free(e.0));
+        let mut columns: Vec<(usize, f64)> = linear
+            .filter(|e| !self.inside[row].contains(&(e.0 as u32)))
+            .collect();
+        // one that stands in few other rows is likely to do
+        columns.sort_by_key(|e| self.linear[e.0].len() + self.nonlinear[e.0].len());
+        for (j, a) in columns {
             let noted = self.makes_up.clone();
             if noted.get(&row).is_none_or(|&k| k == j)
                 && self.is_harmless(j, (a > 0.0) == lacks, row, depth)

@@ -5,7 +5,7 @@
 //! ```
 //!
 //! and likewise min with w < 0, |a| = max(a, −a), the other direction, an argument that contains one of them again, and an
-//! equation that may be relaxed ([`direction`]). What is left is smooth, often linear; its multipliers say with
+//! equation that may be relaxed ([`Directions`]). What is left is smooth, often linear; its multipliers say with
 //! which weights the pieces that meet at a kink count, so that the conditions of first order can be checked there. A program in
 //! which one max, min or abs stands otherwise is left as it is.
 //!
@@ -13,10 +13,9 @@
 //! was relaxed and does not bind, the variable that makes up for it is moved; the point is given back only if it satisfies the
 //! program itself, to the same value of the objective.
 
-mod direction;
-
 use super::Bridge;
 use super::builder::Builder;
+use super::direction::Directions;
 use super::parts::{Parts, expressions, has_kink};
 use crate::autodiff::Evaluator;
 use crate::model::builder::Term;
@@ -26,7 +25,6 @@ use crate::solve::answer::Answer;
 use crate::solve::backend::{Backend, Reply, Task};
 use crate::solve::certificate::{TOLERANCE, nonlinear::linearise, primal};
 use crate::solve::{Claim, ModelStatus, Outcome, Settings, Strategy};
-use direction::Directions;
 use std::collections::BTreeMap;
 
 /// Times that variables make up for each other, at most.
