@@ -28,6 +28,9 @@ const OFF: f64 = 1e-6;
 /// Columns of a form without a switch, at most.
 const MAX_COLUMNS: usize = 3;
 
+/// Forms that are not quadratic, at most: each has an evaluator of its own.
+const MAX_OTHERS: usize = 2000;
+
 /// Where a form has no tangent, it is tried these parts of the way to a point where it has one.
 const TOWARDS: [f64; 6] = [0.0, 1e-6, 1e-3, 0.1, 0.5, 1.0];
 
@@ -225,7 +228,7 @@ struct Split {
 }
 
 impl Split {
-    /// None: a term is not known to be convex.
+    /// None: a term is not known to be convex, or there are too many.
     fn new(instance: &Instance, switches: &Switches) -> Option<Self> {
         let mut builder = Builder::new(instance);
         let mut parts: BTreeMap<usize, Vec<(f64, Term)>> = BTreeMap::new();
@@ -274,6 +277,9 @@ impl Split {
                 if known.degree <= 2 {
                     builder.push_term(row, weight, term);
                     continue;
+                }
+                if forms.len() == MAX_OTHERS {
+                    return None;
                 }
                 let column = builder.columns.push(f64::NEG_INFINITY, f64::INFINITY);
                 let form = Form::new(instance, column, &term, direction[row] * weight, switches);

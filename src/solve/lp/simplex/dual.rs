@@ -122,7 +122,7 @@ impl Simplex {
                 (0..self.n + self.m).for_each(|j| self.side[j] = self.side_of(j));
             }
             self.touched.clear();
-            if fresh && cycle.repeats(violations.iter().sum()) > REPEATS {
+            if fresh && cycle.repeats(self.iterations, violations.iter().sum()) > REPEATS {
                 return Stop::Ended(Ended::Failed);
             }
             let own_bounds = || self.work_lower == self.lower;
@@ -534,20 +534,24 @@ impl PartialOrd for Ratio {
 /// Looks for a sum that comes back again and again (Brent 1980).
 #[derive(Default)]
 struct Cycle {
+    /// The sum that was noted.
     seen: f64,
-    count: u64,
-    renew_at: u64,
     repeats: u32,
+    /// The last iteration that was looked at, and the one after which another sum is noted.
+    last: u64,
+    renew_at: u64,
 }
 
 impl Cycle {
-    /// How often this sum was there since it was noted.
-    fn repeats(&mut self, sum: f64) -> u32 {
-        self.count += 1;
-        self.repeats += u32::from(sum == self.seen && sum > 0.0);
-        if self.count > self.renew_at {
+    /// How often this sum was there after a pivot since it was noted.
+    fn repeats(&mut self, iteration: u64, sum: f64) -> u32 {
+        if iteration > self.last {
+            self.repeats += u32::from(sum == self.seen && sum > 0.0);
+            self.last = iteration;
+        }
+        if iteration > self.renew_at {
             (self.seen, self.repeats) = (sum, 0);
-            self.renew_at = 2 * self.count + 100;
+            self.renew_at = 2 * iteration + 100;
         }
         self.repeats
     }
