@@ -52,7 +52,7 @@ enum Function {
     /// ½ xᵀHx; both triangles of H.
     Quadratic(Entries),
     /// The only row of an instance in these columns.
-    Other(RefCell<Evaluator>),
+    Other(Box<RefCell<Evaluator>>),
 }
 
 /// A convex form, and the column that is not below it.
@@ -325,7 +325,7 @@ impl Form {
         }
         alone.add_row([], Relation::Free, 0.0);
         alone.add_term(0, weight, own);
-        let function = Function::Other(RefCell::new(Evaluator::first_order(&alone)));
+        let function = Function::Other(Box::new(RefCell::new(Evaluator::first_order(&alone))));
         let at_zero = function.value(&vec![0.0; columns.len()]);
         Self {
             column: column as u32,
