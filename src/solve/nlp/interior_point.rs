@@ -37,7 +37,7 @@ pub enum Ended {
     Broken,
 }
 
-/// An interior-point solver's answer, in the variables of the [`Nlp`].
+/// An interior-point solver's answer, in the variables of the [`Problem`].
 #[derive(Clone, Debug)]
 pub struct Solution {
     /// How it ended.
