@@ -12,8 +12,8 @@ use crate::solve::lp::form::proves_infeasible;
 use std::cmp::{Ordering, Reverse};
 use std::collections::BinaryHeap;
 
-/// Times that the same violations come back with a fresh factor before the numbers are said to have broken down.
-const REPEATS: u32 = 20;
+/// Pivots one after the other that no update of the factor takes: the numbers have broken down.
+const REFUSED_UPDATES: u32 = 100;
 
 /// The box of a free variable where those with one bound have 1: it should be basic.
 const FREE: f64 = 1000.0;
@@ -95,7 +95,6 @@ impl Simplex {
         // Everything is looked at anew.
         let mut renewed = None;
         let mut largest = 0.0f64;
-        let mut cycle = Cycle::default();
         loop {
             if self.iterations.is_multiple_of(32)
                 && let Some(why) = stop(self.iterations)
@@ -104,6 +103,9 @@ impl Simplex {
             }
             if self.is_spent() {
                 return Stop::Ended(Ended::Iterations);
+            }
+            if self.refused_updates > REFUSED_UPDATES {
+                return Stop::Ended(Ended::Failed);
             }
             if self.cutoff.is_finite() && self.iterations.is_multiple_of(4) {
                 let terms = self.work_cost.iter().zip(&self.x).map(|(c, x)| c * x);
@@ -122,9 +124,6 @@ impl Simplex {
                 (0..self.n + self.m).for_each(|j| self.side[j] = self.side_of(j));
             }
             self.touched.clear();
-            if fresh && cycle.repeats(self.iterations, violations.iter().sum()) > REPEATS {
-                return Stop::Ended(Ended::Failed);
-            }
             let own_bounds = || self.work_lower == self.lower;
             if self.most_work.is_finite() && self.iterations.is_multiple_of(16) && own_bounds() {
                 let sum: f64 = violations.iter().map(|v| v.sqrt()).sum();
@@ -528,32 +527,6 @@ impl Ord for Ratio {
 impl PartialOrd for Ratio {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
-    }
-}
-
-/// Looks for a sum that comes back again and again (Brent 1980).
-#[derive(Default)]
-struct Cycle {
-    /// The sum that was noted.
-    seen: f64,
-    repeats: u32,
-    /// The last iteration that was looked at, and the one after which another sum is noted.
-    last: u64,
-    renew_at: u64,
-}
-
-impl Cycle {
-    /// How often this sum was there after a pivot since it was noted.
-    fn repeats(&mut self, iteration: u64, sum: f64) -> u32 {
-        if iteration > self.last {
-            self.repeats += u32::from(sum == self.seen && sum > 0.0);
-            self.last = iteration;
-        }
-        if iteration > self.renew_at {
-            (self.seen, self.repeats) = (sum, 0);
-            self.renew_at = 2 * iteration + 100;
-        }
-        self.repeats
     }
 }
 

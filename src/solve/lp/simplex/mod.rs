@@ -120,6 +120,8 @@ pub struct Simplex {
     touched: Vec<u32>,
     /// How often the basis was factorised.
     renewals: u64,
+    /// Pivots since the last one that an update of the factor took.
+    refused_updates: u32,
     /// Room for the solutions of a dual pivot.
     solutions: [Entries; 3],
     /// Largest violation of a bound that counts as none.
@@ -598,6 +600,7 @@ impl Simplex {
     /// Alternates the methods; the first `perturbed` rounds with perturbations.
     fn rounds(&mut self, perturbed: u32, stop: &mut dyn FnMut(u64) -> Option<Ended>) -> Ended {
         let mut before = None;
+        self.refused_updates = 0;
         for round in 0..12 {
             self.perturb = round < perturbed;
             if self.restore().is_none() {
@@ -825,7 +828,9 @@ impl Simplex {
         }
         let column = self.column(entering);
         let factor = self.factor.as_mut()?;
-        if !factor.replace(slot, &column) || factor.is_worn() {
+        let updated = factor.replace(slot, &column);
+        self.refused_updates = if updated { 0 } else { self.refused_updates + 1 };
+        if !updated || factor.is_worn() {
             return self.refactor();
         }
         Some(())
