@@ -13,7 +13,7 @@
 
 use super::builder::Builder;
 use super::direction::Directions;
-use super::parts::{Parts, directions, expressions};
+use super::parts::{directions, expressions};
 use crate::autodiff::Evaluator;
 use crate::model::builder::Term;
 use crate::model::instance::{ColumnKind, Instance, Relation};
@@ -131,6 +131,50 @@ impl Function {
 }
 
 impl Form {
+    /// Of a term, times its weight.
+    fn new(
+        instance: &Instance,
+        column: usize,
+        term: &Term,
+        weight: f64,
+        switches: &Switches,
+    ) -> Self {
+        let mut columns = term.columns.clone();
+        columns.sort_unstable();
+        columns.dedup();
+        let mut alone = Instance::default();
+        for &j in &columns {
+            let c = &instance.columns;
+            alone.columns.push(c.lower[j as usize], c.upper[j as usize]);
+        }
+        let mut own = term.clone();
+        for j in &mut own.columns {
+            *j = columns.partition_point(|k| *k < *j) as u32;
+        }
+        alone.add_row([], Relation::Free, 0.0);
+        alone.add_term(0, weight, own);
+        let function = Function::Other(Box::new(RefCell::new(Evaluator::first_order(&alone))));
+        let at_zero = function.value(&vec![0.0; columns.len()]);
+        Self {
+            column: column as u32,
+            switch: at_zero.and_then(|_| common_switch(switches, &columns)),
+            whole: is_whole(instance, &columns),
+            single: term.is_of_one_sum(),
+            columns,
+            function,
+            at_zero: at_zero.unwrap_or(0.0),
+            inside: None,
+        }
+    }
+
+    /// Goes into a row of a program in the making, and starts at its value.
+    fn put(self, row: usize, direction: f64, builder: &mut Builder, forms: &mut Vec<Self>) {
+        let level = self.value(&builder.columns.level);
+        builder.columns.level[self.column as usize] = level.unwrap_or(0.0);
+        builder.entries.push((row, self.column, direction));
+        forms.push(self);
+    }
+
     /// All columns that its tangents have.
     pub(in crate::solve) fn all_columns(&self) -> impl Iterator<Item = u32> + '_ {
         let own = self.columns.iter().copied();
@@ -236,15 +280,7 @@ impl Split {
             if instance.rows.relation[row] == Relation::Free {
                 continue;
             }
-            let Parts {
-                constant,
-                linear,
-                nonlinear,
-            } = term.parts(coefficient);
-            builder.rows.rhs[row] -= constant;
-            builder
-                .entries
-                .extend(linear.into_iter().map(|(j, a)| (row, j, a)));
+            let nonlinear = builder.place_linear(row, term.parts(coefficient));
             parts.entry(row).or_default().extend(nonlinear);
         }
         let (mut direction, mut relations) = (directions(instance), None);
@@ -283,10 +319,7 @@ impl Split {
                 }
                 let column = builder.columns.push(f64::NEG_INFINITY, f64::INFINITY);
                 let form = Form::new(instance, column, &term, direction[row] * weight, switches);
-                let level = form.value(&instance.columns.level);
-                builder.columns.level[column] = level.unwrap_or(0.0);
-                builder.entries.push((row, column as u32, direction[row]));
-                forms.push(form);
+                form.put(row, direction[row], &mut builder, &mut forms);
             }
         }
         let relaxed = relations.map(|(_, relation)| {
@@ -299,44 +332,6 @@ impl Split {
             forms,
             relaxed,
         })
-    }
-}
-
-impl Form {
-    /// Of a term, times its weight.
-    fn new(
-        instance: &Instance,
-        column: usize,
-        term: &Term,
-        weight: f64,
-        switches: &Switches,
-    ) -> Self {
-        let mut columns = term.columns.clone();
-        columns.sort_unstable();
-        columns.dedup();
-        let mut alone = Instance::default();
-        for &j in &columns {
-            let c = &instance.columns;
-            alone.columns.push(c.lower[j as usize], c.upper[j as usize]);
-        }
-        let mut own = term.clone();
-        for j in &mut own.columns {
-            *j = columns.partition_point(|k| *k < *j) as u32;
-        }
-        alone.add_row([], Relation::Free, 0.0);
-        alone.add_term(0, weight, own);
-        let function = Function::Other(Box::new(RefCell::new(Evaluator::first_order(&alone))));
-        let at_zero = function.value(&vec![0.0; columns.len()]);
-        Self {
-            column: column as u32,
-            switch: at_zero.and_then(|_| common_switch(switches, &columns)),
-            whole: is_whole(instance, &columns),
-            single: term.is_of_one_sum(),
-            columns,
-            function,
-            at_zero: at_zero.unwrap_or(0.0),
-            inside: None,
-        }
     }
 }
 
@@ -406,10 +401,7 @@ fn with_squares(
                 at_zero: 0.0,
                 inside: None,
             };
-            let level = form.value(&instance.columns.level);
-            builder.columns.level[column] = level.unwrap_or(0.0);
-            builder.entries.push((row, column as u32, direction[row]));
-            forms.push(form);
+            form.put(row, direction[row], &mut builder, &mut forms);
         }
     }
     Some(WithForms {

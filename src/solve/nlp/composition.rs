@@ -91,7 +91,7 @@ impl Composed {
 }
 
 /// The graph of a function of one argument over a range of it.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy)]
 struct Graph {
     convex: bool,
     concave: bool,
@@ -106,6 +106,21 @@ impl Graph {
         convex: false,
         concave: true,
         rises: true,
+        falls: false,
+    };
+
+    const EXPONENTIAL: Self = Self {
+        convex: true,
+        concave: false,
+        rises: true,
+        falls: false,
+    };
+
+    /// −x log x.
+    const ENTROPY: Self = Self {
+        convex: false,
+        concave: true,
+        rises: false,
         falls: false,
     };
 
@@ -202,29 +217,17 @@ pub fn composed(term: &Term, columns: &Columns) -> Composed {
                     None => other,
                 }
             }
-            (Op::Call(f, _), [(a, _)]) => match f {
-                Function::Exp => a.under(
-                    Graph {
-                        convex: true,
-                        rises: true,
-                        ..Graph::default()
-                    },
-                    degree,
-                    range,
-                ),
-                Function::Log | Function::Log2 | Function::Log10 | Function::Sqrt => {
-                    a.under(Graph::ROOT, degree, range)
-                }
-                Function::Entropy => a.under(
-                    Graph {
-                        concave: true,
-                        ..Graph::default()
-                    },
-                    degree,
-                    range,
-                ),
-                _ => other,
-            },
+            (Op::Call(f, _), [(a, _)]) => {
+                let graph = match f {
+                    Function::Exp => Some(Graph::EXPONENTIAL),
+                    Function::Log | Function::Log2 | Function::Log10 | Function::Sqrt => {
+                        Some(Graph::ROOT)
+                    }
+                    Function::Entropy => Some(Graph::ENTROPY),
+                    _ => None,
+                };
+                graph.map_or(other, |g| a.under(g, degree, range))
+            }
             _ => other,
         };
         stack.push((value, begin));
