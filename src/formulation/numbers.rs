@@ -76,11 +76,7 @@ fn term(g: &Generated, k: &Kernel, t: KernelTerm, number: &dyn Fn(f64) -> Expr) 
         let made = match *op {
             Op::Var(n) => variable(n),
             Op::Const(n) => constant(n),
-            Op::Affine {
-                constant: first,
-                variable: x,
-                terms,
-            } => {
+            Op::Affine(first, x, terms) => {
                 let all = (0..terms)
                     .map(|n| (false, constant(first + 1 + n) * variable(x + n)))
                     .chain([(false, constant(first))]);
