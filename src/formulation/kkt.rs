@@ -42,18 +42,8 @@ pub fn kkt(
     }
     // A variable whose terms cancel has no column, and stands in the text all the same.
     let mut own = std::mem::take(&mut d.out.own);
-    let mut see = |e: &Expr| {
-        e.walk(&mut |e| {
-            if let Expr::Variable(Variable::Own(v), _) = e
-                && !own.contains(v)
-            {
-                own.push(*v);
-            }
-        });
-    };
-    for r in &d.out.rows {
-        see(&r.left);
-        see(&r.right);
+    for e in d.out.rows.iter().flat_map(|r| [&r.left, &r.right]) {
+        e.own_variables(&mut own);
     }
     d.out.own = own;
     for v in d.variables() {

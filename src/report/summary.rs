@@ -182,11 +182,7 @@ fn time(seconds: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::json::{Residual, Seconds};
     use super::*;
-    use crate::model::instance::Sense;
-    use crate::model::outcome::{ModelStatus, SolverStatus};
-    use crate::model::problem_type::ProblemType;
 
     #[test]
     fn digits_are_ten() {
