@@ -96,11 +96,7 @@ fn reference(kernel: &Kernel, x: &[f64], c: &[f64]) -> Option<(Second, [f64; 3])
         let top = match *op {
             Op::Var(k) => var(k),
             Op::Const(k) => Second::constant(n, c[k as usize]),
-            Op::Affine {
-                constant,
-                variable,
-                terms,
-            } => {
+            Op::Affine(constant, variable, terms) => {
                 let mut s = Second::constant(n, c[constant as usize]);
                 for m in 0..terms {
                     s.v += c[(constant + 1 + m) as usize] * x[(variable + m) as usize];
@@ -198,11 +194,7 @@ fn expression(r: &mut Random, n: u32, m: u32, depth: u32, ops: &mut Vec<Op>) {
     if depth == 0 || r.below(12) == 0 {
         match r.below(5) {
             0 => ops.push(Op::Const(r.below(u64::from(m)) as u32)),
-            1 if n >= 2 && m >= 3 => ops.push(Op::Affine {
-                constant: 0,
-                variable: r.below(u64::from(n) - 1) as u32,
-                terms: 2,
-            }),
+            1 if n >= 2 && m >= 3 => ops.push(Op::Affine(0, r.below(u64::from(n) - 1) as u32, 2)),
             _ => ops.push(Op::Var(r.below(u64::from(n)) as u32)),
         }
         return;

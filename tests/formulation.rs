@@ -9,7 +9,7 @@ use crate::common::{self, Memory, files, shared};
 use bmod::cli::host::{Output, SystemHost};
 use bmod::formulation::check::{self, Comparison};
 use bmod::formulation::derive::Primal;
-use bmod::formulation::{Formulation, dual, study, text};
+use bmod::formulation::{Formulation, Scope, dual, study, text};
 use bmod::host::Host;
 use bmod::model::instance::Relation;
 use bmod::model::origin::Blocks;
@@ -69,14 +69,12 @@ fn derived(m: &Machine, primal: &Primal) -> Derived {
     if primal.objective.is_none() || primal.using.ends_with("mpec") || discrete {
         return Derived::Nothing;
     }
-    let (symbols, store) = (&m.symbols, &m.store);
-    let written = |f: &Formulation| text::model(symbols, store, f, None, "", true, None);
+    let scope = Scope::of(m);
+    let written = |f: &Formulation| text::model(scope, f, None, "", true, None);
     let result = match shape(&primal.generated.instance) {
-        Shape::Linear | Shape::ConvexQuadratic { .. } => {
-            check::checked_dual(symbols, store, primal)
-                .map(|(f, c)| Derived::Dual(Box::new(f.clone()), c, written(&f)))
-        }
-        _ => check::checked_kkt(symbols, store, primal)
+        Shape::Linear | Shape::ConvexQuadratic { .. } => check::checked_dual(scope, primal)
+            .map(|(f, c)| Derived::Dual(Box::new(f.clone()), c, written(&f))),
+        _ => check::checked_kkt(scope, primal)
             .map(|(f, c)| Derived::Kkt(Box::new(f.clone()), c, written(&f))),
     };
     result.unwrap_or_else(Derived::Refused)
@@ -694,8 +692,8 @@ fn a_derived_model_may_include_the_text() {
     let mut host = SystemHost::new(&file, Path::new("."), &[], Output::Quiet);
     let name = file.to_string_lossy();
     let model = look(&mut host, &name, StudyChoice::default(), &mut |m, p| {
-        let f = dual::dual(&m.symbols, &m.store, &p, false).expect("a dual");
-        text::model(&m.symbols, &m.store, &f, Some("diet.blk"), "", true, None)
+        let f = dual::dual(Scope::of(m), &p, false).expect("a dual");
+        text::model(Scope::of(m), &f, Some("diet.blk"), "", true, None)
     });
     let mut derived = Model::from_text("dual.blk", model.expect("it is solved"));
     derived.file("diet.blk", std::fs::read(&file).expect("the text"));
@@ -1215,9 +1213,9 @@ fn the_kinematic_theorem_written_by_hand_is_the_dual_of_the_static_one() {
                     let i = Named::new(m, primal.generated);
                     return entries(&i, &str::to_string);
                 }
-                let dual = dual::dual(&m.symbols, &m.store, &primal, true).expect("a dual");
+                let dual = dual::dual(Scope::of(m), &primal, true).expect("a dual");
                 assert!(dual.by_instance.is_empty());
-                let text = text::model(&m.symbols, &m.store, &dual, None, "", true, None);
+                let text = text::model(Scope::of(m), &dual, None, "", true, None);
                 entries(&Named::of(&text), &|n| {
                     let names = [
                         ("dual_alpha", "norm"),

@@ -9,7 +9,7 @@ use crate::formulation::check::Comparison;
 use crate::formulation::derive::Primal;
 use crate::formulation::derived::Kind;
 use crate::formulation::page::{Block, Format, Page, body, write};
-use crate::formulation::{Formulation, explain, range, show, study};
+use crate::formulation::{Formulation, Scope, explain, range, show, study};
 use crate::report::diagnostic::Diagnostic;
 use crate::report::diagnostics::{self, Look};
 use crate::run::{self, Machine, Studied, StudyChoice};
@@ -106,7 +106,7 @@ impl Formulas {
         Self {
             title: f.name.clone(),
             page,
-            algebra: algebra(&m.symbols, &m.store, f),
+            algebra: algebra(Scope::of(m), f),
             model: String::new(),
             remarks: Vec::new(),
             check: None,

@@ -211,7 +211,7 @@ fn curved(kernel: &Kernel) -> Vec<Vec<u32>> {
     let (mut rest, mut sets) = (vec![ops.len() - 1], Vec::new());
     while let Some(end) = rest.pop() {
         match ops[end] {
-            Op::Const(_) | Op::Var(_) | Op::Affine { .. } => {}
+            Op::Const(_) | Op::Var(_) | Op::Affine(..) => {}
             Op::Add | Op::AddN(_) | Op::Subtract | Op::Negate => {
                 let mut next = end;
                 for _ in 0..ops[end].arguments() {
@@ -230,9 +230,9 @@ fn curved(kernel: &Kernel) -> Vec<Vec<u32>> {
                 for op in &ops[begin[end]..end] {
                     match *op {
                         Op::Var(k) => see(k),
-                        Op::Affine {
-                            variable, terms, ..
-                        } => (variable..variable + terms).for_each(&mut see),
+                        Op::Affine(_, variable, terms) => {
+                            (variable..variable + terms).for_each(&mut see)
+                        }
                         _ => {}
                     }
                 }
@@ -338,16 +338,12 @@ fn renumber(ops: &[Op]) -> (Kernel, Vec<u32>, Vec<u32>) {
         .map(|op| match *op {
             Op::Var(k) => Op::Var(variables.place(k)),
             Op::Const(k) => Op::Const(constants.place(k)),
-            Op::Affine {
-                constant,
-                variable,
+            // an affine form needs its slots in sequence
+            Op::Affine(constant, variable, terms) => Op::Affine(
+                constants.sequence(constant, terms + 1),
+                variables.sequence(variable, terms),
                 terms,
-            } => Op::Affine {
-                // an affine form needs its slots in sequence
-                constant: constants.sequence(constant, terms + 1),
-                variable: variables.sequence(variable, terms),
-                terms,
-            },
+            ),
             other => other,
         })
         .collect();
@@ -390,11 +386,7 @@ fn hash(kernel: &Kernel) -> u64 {
         std::mem::discriminant(op).hash(&mut h);
         match *op {
             Op::Var(k) | Op::Const(k) | Op::AddN(k) | Op::MultiplyN(k) => k.hash(&mut h),
-            Op::Affine {
-                constant,
-                variable,
-                terms,
-            } => (constant, variable, terms).hash(&mut h),
+            Op::Affine(constant, variable, terms) => (constant, variable, terms).hash(&mut h),
             Op::PowerInt(n) => n.hash(&mut h),
             Op::Call(f, n) => (f, n).hash(&mut h),
             Op::Add | Op::Subtract | Op::Multiply | Op::Divide | Op::Negate | Op::Power => {}

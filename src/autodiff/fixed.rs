@@ -73,11 +73,7 @@ fn put_in(terms: &KernelTerms, mask: &[bool], members: &[usize], value: &[f64]) 
     for op in &terms.kernel.ops {
         match *op {
             Op::Var(k) => ops.push(variable(k)),
-            Op::Affine {
-                constant,
-                variable: first,
-                terms: n,
-            } => {
+            Op::Affine(constant, first, n) => {
                 let slots = first..first + n;
                 if slots.clone().any(|k| mask[k as usize]) {
                     ops.push(Op::Const(constant));
@@ -91,11 +87,7 @@ fn put_in(terms: &KernelTerms, mask: &[bool], members: &[usize], value: &[f64]) 
                     ops.push(Op::AddN(n + 1));
                 } else {
                     let variable = place.get(first as usize).copied().unwrap_or(0);
-                    ops.push(Op::Affine {
-                        constant,
-                        variable,
-                        terms: n,
-                    });
+                    ops.push(Op::Affine(constant, variable, n));
                 }
             }
             other => ops.push(other),

@@ -103,11 +103,7 @@ impl Builder<'_> {
             let item = match *op {
                 Op::Var(k) => Item::Node(self.node(Element::Var(k))),
                 Op::Const(k) => Item::Node(self.constant(k)),
-                Op::Affine {
-                    constant,
-                    variable,
-                    terms,
-                } => {
+                Op::Affine(constant, variable, terms) => {
                     let base = self.constant(constant);
                     let mut sum = Vec::with_capacity(terms as usize);
                     for m in 0..terms {

@@ -41,23 +41,3 @@ pub fn part(f: DataFunction, x: f64) -> Option<f64> {
         _ => return None,
     })
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn day_numbers() {
-        assert_eq!(jdate(1900.0, 1.0, 1.0), Some(1.0));
-        assert_eq!(jdate(2000.0, 1.0, 1.0), Some(36525.0));
-        assert_eq!(jdate(2005.7, 22.0, 300.3), Some(39289.0));
-        assert_eq!(jdate(2005.0, -5.0, -10.7), Some(38156.0));
-        assert_eq!(jdate(9999.0, 13.0, 1.0), None);
-        assert_eq!(jdate(1.0, 1.0, 1.0), Some(-693594.0));
-        assert_eq!(part(DataFunction::GMonth, -693595.0), None);
-        assert_eq!(part(DataFunction::GDow, 36525.0), Some(6.0));
-        assert_eq!(part(DataFunction::GLeap, 36525.0), Some(1.0));
-        assert_eq!(part(DataFunction::GYear, 36525.5), Some(2000.0));
-        assert_eq!(part(DataFunction::GHour, 36525.5), Some(12.0));
-    }
-}

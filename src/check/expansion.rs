@@ -603,27 +603,3 @@ pub(super) fn set_prefix<'a>(parts: &[KeyPart<'a>]) -> Option<Vec<KeyPart<'a>>> 
     }
     Some(out)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::{NoRange, range};
-
-    #[test]
-    fn ranges_keep_prefix_suffix_and_zeros() {
-        let all = |from, to, most| range(from, to, most).map(|l| l.iter().collect::<Vec<_>>());
-        assert_eq!(all("a9", "a11", 100).unwrap(), ["a9", "a10", "a11"]);
-        assert_eq!(all("c09", "c11", 100).unwrap(), ["c09", "c10", "c11"]);
-        assert_eq!(all("s02s", "s04s", 100).unwrap(), ["s02s", "s03s", "s04s"]);
-        assert_eq!(all("1990", "1992", 100).unwrap(), ["1990", "1991", "1992"]);
-        assert_eq!(
-            all("a98", "a101", 100).unwrap(),
-            ["a98", "a99", "a100", "a101"]
-        );
-        assert_eq!(all("c000", "c002", 100).unwrap(), ["c000", "c001", "c002"]);
-        assert_eq!(all("a1", "b3", 100), Err(NoRange::Unlike));
-        assert_eq!(all("a3", "a1", 100).unwrap(), ["a3", "a2", "a1"]);
-        assert_eq!(all("b", "d", 100).unwrap(), ["b", "c", "d"]);
-        assert_eq!(all("y", "ab", 100).unwrap(), ["y", "z", "aa", "ab"]);
-        assert_eq!(all("d", "a", 100), Err(NoRange::Unlike));
-    }
-}

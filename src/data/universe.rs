@@ -187,20 +187,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn labels_keep_first_spelling_and_order() {
-        let mut u = Universe::default();
-        assert_eq!(u.get("nowhere"), None);
-        let a = u.intern("Seattle");
-        let b = u.intern("san-diego-and-more");
-        assert_eq!(u.intern("SEATTLE"), a);
-        assert_eq!(u.intern("San-Diego-And-More"), b);
-        assert_eq!((a, b), (0, 1));
-        assert_eq!(u.name(a), "Seattle");
-        assert_eq!(u.get("nowhere"), None);
-        assert_ne!(u.intern("a@"), u.intern("a`"));
-    }
-
-    #[test]
     fn many_labels_are_found_again() {
         let names: Vec<String> = (0..5000u32)
             .map(|n| format!("{}{n}", "ab".repeat(n as usize % 6)))

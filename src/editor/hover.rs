@@ -214,20 +214,13 @@ impl Editor {
     }
 
     fn symbol_contents(&self, file: &str, name: &str) -> Option<String> {
-        let a = self.analysis(file)?;
-        let found = a.programs().find_map(|p| Some((p, p.symbols.find(name)?)));
-        found.map(|(p, s)| symbol(p, p.symbols.get(s)))
+        self.known(file, name).map(|(p, s)| symbol(p, s))
     }
 
     fn attribute(&self, file: &str, d: &Document, token: usize) -> Option<String> {
         let word = d.word(token);
         let of = token.checked_sub(2).map(|t| d.word(t).to_lowercase())?;
-        let a = self.analysis(file);
-        let kind = a.and_then(|a| {
-            a.programs()
-                .find_map(|p| Some(p.symbols.get(p.symbols.find(&of)?).kind.clone()))
-        });
-        let list: &[&'static [Entry]] = match kind {
+        let list: &[&'static [Entry]] = match self.known(file, &of).map(|(_, s)| &s.kind) {
             Some(SymbolKind::Model(_)) => &[words::MODEL_ATTRIBUTES],
             Some(SymbolKind::Set { .. } | SymbolKind::Alias(_)) => &[words::LABEL_ATTRIBUTES],
             _ => &[
@@ -273,13 +266,10 @@ impl Editor {
         let d = self.document(file)?;
         let (token, position) = call_around(d, d.offset(at))?;
         let name = d.word(token).to_lowercase();
-        let known = self.analysis(file).and_then(|a| {
-            a.programs().find_map(|p| {
-                let s = p.symbols.get(p.symbols.find(&name)?);
-                let domain = p.symbols.domain_names(s);
-                let label = format!("{}({})", s.name, domain.join(","));
-                Some((label, declaration(p, s)))
-            })
+        let known = self.known(file, &name).map(|(p, s)| {
+            let domain = p.symbols.domain_names(s);
+            let label = format!("{}({})", s.name, domain.join(","));
+            (label, declaration(p, s))
         });
         let (label, documentation) = known.or_else(|| {
             let all = words::FUNCTIONS.iter().chain(words::INNER);

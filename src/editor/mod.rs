@@ -41,6 +41,8 @@ pub use outline::{Fold, FoldKind, Lens, OutlineItem, TOKEN_KINDS, Token};
 pub use place::{Location, Position, Range};
 pub use project::Files;
 
+use crate::check::Program;
+use crate::check::symbols::Symbol;
 use analysis::Analysis;
 use project::Document;
 use rustc_hash::FxHashMap;
@@ -137,6 +139,12 @@ impl Editor {
 
     fn analysis(&self, file: &str) -> Option<&Analysis> {
         self.analyses.get(&self.main_of(file))
+    }
+
+    /// The symbol of a name, and the newest program that knows it.
+    fn known(&self, file: &str, name: &str) -> Option<(&Program, &Symbol)> {
+        let mut all = self.analysis(file)?.programs();
+        all.find_map(|p| Some((p, p.symbols.get(p.symbols.find(name)?))))
     }
 
     /// The layout of a text, as `bmod fmt` has it, as one edit; none where nothing changes.

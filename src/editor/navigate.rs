@@ -276,11 +276,8 @@ impl Editor {
     }
 
     fn is_symbol(&self, file: &str, name: &str) -> bool {
-        let known = self
-            .analysis(file)
-            .is_some_and(|a| a.programs().any(|p| p.symbols.find(name).is_some()));
         let subject = Subject::Symbol(name.to_owned());
-        known
+        self.known(file, name).is_some()
             || self
                 .project(file)
                 .iter()

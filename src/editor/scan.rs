@@ -116,27 +116,6 @@ fn is_word_here(word: &str, first: &str) -> bool {
     }
 }
 
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
-enum Phase {
-    /// Between statements.
-    #[default]
-    Start,
-    /// Code.
-    Code,
-    /// In a declaration: before a name.
-    Name,
-    /// Behind a name, on its line.
-    AfterName,
-    /// In the parentheses behind a name.
-    Domain,
-    /// Behind the text, or on a new line.
-    AfterText,
-    /// Between slashes.
-    Body,
-    /// In the lines of a table.
-    Table,
-}
-
 /// What is open.
 #[derive(Clone, Copy, Debug)]
 struct Frame {
@@ -156,8 +135,6 @@ struct Scanner<'a> {
     text: &'a str,
     code: &'a str,
     scan: Scan,
-    phase: Phase,
-    class: Class,
     frames: Vec<Frame>,
     /// Statements that are open, outermost first.
     open: Vec<usize>,
@@ -167,13 +144,9 @@ struct Scanner<'a> {
     control: bool,
     /// First word of the statement.
     word: String,
-    new_line: bool,
-    /// At the beginning of a record of data.
-    record: bool,
-    depth: usize,
-    names: usize,
-    /// Up to here the text is read: the words of a declaration may stand on two lines.
-    read: usize,
+    /// In data; in the lines of a table.
+    data: bool,
+    table: bool,
 }
 
 impl Scan {
@@ -190,10 +163,17 @@ impl Scan {
             },
             ..Scanner::default()
         };
-        for line in 0..s.scan.lines.kinds.len() {
-            s.line(line);
+        let mut at = 0;
+        while at < code.len() {
+            let blank = words::is_blank(code.as_bytes()[at]) || !code.is_char_boundary(at);
+            at = match (blank, s.open.is_empty()) {
+                (true, _) => at + 1,
+                (_, true) => s.start(at),
+                _ => s.code(at),
+            };
         }
         s.end(false);
+        s.lines();
         let mut scan = s.scan;
         scan.lines.code = code;
         // A statement without a word is none.
@@ -244,59 +224,55 @@ impl Scanner<'_> {
             lo,
             hi,
             role,
-            data: matches!(self.phase, Phase::Body | Phase::Table),
-            table: self.phase == Phase::Table,
+            data: self.data,
+            table: self.table,
         });
         self.scan.tokens.len() - 1
     }
 
-    fn line(&mut self, line: usize) {
-        let kind = self.scan.lines.kinds[line];
-        let range = self.scan.lines.range(line, self.text);
-        match kind {
-            LineKind::Comment => {
-                self.push(range.lo, range.hi, Role::Comment);
-            }
-            LineKind::Raw => {
-                if range.hi > range.lo {
+    /// Puts comments, directives and what is not read between the words.
+    fn lines(&mut self) {
+        let lines = std::mem::take(&mut self.scan.lines);
+        let words = self.scan.tokens.len();
+        for c in &lines.comments {
+            self.push(c.lo, c.hi, Role::Comment);
+        }
+        for (line, kind) in lines.kinds.iter().enumerate() {
+            let range = lines.range(line, self.text);
+            match kind {
+                LineKind::Comment => drop(self.push(range.lo, range.hi, Role::Comment)),
+                LineKind::Raw if range.hi > range.lo => {
                     self.push(range.lo, range.hi, Role::Raw);
                 }
-            }
-            LineKind::Directive => self.directive(range.lo, range.hi),
-            LineKind::Code | LineKind::Fixed => {
-                self.new_line = true;
-                self.record = true;
-                if self.class == Class::Table && self.phase == Phase::AfterName && self.names > 0
-                    || self.class == Class::Table && self.phase == Phase::AfterText
-                {
-                    self.phase = Phase::Table;
-                }
-                let comments: Vec<_> = {
-                    let all = &self.scan.lines.comments;
-                    let from = all.partition_point(|c| c.lo < range.lo);
-                    all[from..]
-                        .iter()
-                        .take_while(|c| c.lo < range.hi)
-                        .copied()
-                        .collect()
-                };
-                let mut at = range.lo;
-                for c in comments {
-                    self.code_of(at, c.lo);
-                    self.push(c.lo, c.hi, Role::Comment);
-                    at = c.hi;
-                }
-                self.code_of(at, range.hi);
+                LineKind::Directive => self.directive(range.lo, range.hi),
+                _ => {}
             }
         }
+        self.scan.lines = lines;
+        let mut order: Vec<usize> = (0..self.scan.tokens.len()).collect();
+        order.sort_by_key(|&t| self.scan.tokens[t].lo);
+        let mut place = vec![0; order.len()];
+        order.iter().enumerate().for_each(|(n, &t)| place[t] = n);
+        self.scan.tokens = order.iter().map(|&t| self.scan.tokens[t]).collect();
+        for s in &mut self.scan.statements {
+            let last = s.end.min(words).checked_sub(1).filter(|l| *l >= s.first);
+            s.end = last.map_or(0, |l| place[l] + 1);
+            s.first = place.get(s.first).copied().unwrap_or(s.end);
+            s.block = s.block.map(|b| place[b]);
+        }
+    }
+
+    /// Where the line ends that a byte stands in, or a comment begins.
+    fn line_end(&self, at: usize) -> usize {
+        let end =
+            memchr::memchr(b'\n', &self.code.as_bytes()[at..]).map_or(self.code.len(), |n| at + n);
+        let comments = &self.scan.lines.comments;
+        let next = comments.get(comments.partition_point(|c| c.lo <= at));
+        next.map_or(end, |c| c.lo.min(end))
     }
 
     /// A line with a directive: its name, and the words behind it.
     fn directive(&mut self, lo: usize, hi: usize) {
-        // What follows a table is no row of it.
-        if self.phase == Phase::Table {
-            self.end(true);
-        }
         let text = self.text;
         let bytes = text.as_bytes();
         let mut i = lo;
@@ -346,8 +322,6 @@ impl Scanner<'_> {
         self.frames.clear();
         self.expects = false;
         self.control = false;
-        self.phase = Phase::Start;
-        self.class = Class::Other;
     }
 
     /// Ends the statements inside of the innermost block.
@@ -380,56 +354,20 @@ impl Scanner<'_> {
         });
     }
 
-    fn code_of(&mut self, lo: usize, hi: usize) {
-        let mut i = lo.max(self.read);
-        while i < hi {
-            let b = self.code.as_bytes()[i];
-            if words::is_blank(b) || !self.code.is_char_boundary(i) {
-                i += 1;
-                continue;
-            }
-            i = match self.phase {
-                Phase::Start => self.start(i),
-                Phase::Code => self.code(i, hi),
-                Phase::Body => self.body(i, hi),
-                Phase::Table => self.table(i, hi),
-                _ => self.declaration(i, hi),
-            }
-            .max(i);
-            self.read = i;
-            self.new_line = false;
-        }
-    }
-
-    /// At the first byte of a statement; nothing is read yet, unless it is a `;` alone or the words of a declaration.
+    /// At the first byte of a statement: a `;` alone, a declaration, or the code that is to be read.
     fn start(&mut self, i: usize) -> usize {
         if self.code.as_bytes()[i] == b';' {
             self.push(i, i + 1, Role::Semicolon);
             return i + 1;
         }
         let (class, end) = words::classify(self.code, i);
-        self.class = class;
-        self.names = 0;
         self.begin(class);
+        if class.declares() {
+            return self.declaration(class, i, end);
+        }
         let first = words::word_end(self.code.as_bytes(), i);
         self.word = self.code[i..first].to_ascii_lowercase();
-        if !class.declares() {
-            self.phase = Phase::Code;
-            return i;
-        }
-        // `positive variables`: each word by itself; they may stand on two lines.
-        let mut at = i;
-        while at < end {
-            let to = words::word_end(self.code.as_bytes(), at);
-            if to == at {
-                at += 1;
-                continue;
-            }
-            self.push(at, to, Role::Keyword);
-            at = to;
-        }
-        self.phase = Phase::Name;
-        end
+        i
     }
 }
 

@@ -4,10 +4,9 @@ use super::gradient::gradient;
 use super::names::Names;
 use super::text::{aggregate_word, binary_word, taken};
 use super::tree::{Binder, Expr, IndexId, Part, Sense, Source, Variable};
-use super::{Formulation, Origin, Row, Sign};
+use super::{Formulation, Origin, Row, Scope, Sign};
 use crate::check::functions::{attribute_word, data_word, label_word};
 use crate::check::node::SymbolId;
-use crate::check::symbols::{Store, Symbols};
 use crate::report::json::Number;
 use serde::Serialize;
 
@@ -184,7 +183,7 @@ pub enum Expression {
 }
 
 /// The formulation with the names of the text.
-pub fn algebra(symbols: &Symbols, store: &Store, f: &Formulation) -> Algebra {
+pub fn algebra(scope: Scope, f: &Formulation) -> Algebra {
     let mut indices = f.indices.clone();
     let terms: Vec<_> = f
         .rows
@@ -192,10 +191,9 @@ pub fn algebra(symbols: &Symbols, store: &Store, f: &Formulation) -> Algebra {
         .map(|r| gradient(&r.left, &r.right, &mut indices).unwrap_or_default())
         .collect();
     let mut n = Naming {
-        symbols,
-        store,
+        scope,
         f,
-        names: Names::new(symbols, &indices, taken(symbols, f)),
+        names: Names::new(scope.symbols, &indices, taken(scope.symbols, f)),
     };
     let mut equations = Vec::new();
     for (r, terms) in f.rows.iter().zip(terms) {
@@ -216,8 +214,8 @@ pub fn algebra(symbols: &Symbols, store: &Store, f: &Formulation) -> Algebra {
     let domain = |d: &[SymbolId]| d.iter().map(|s| n.name(*s)).collect();
     let own = f.own.iter().map(|&v| AlgebraVariable {
         name: n.name(v),
-        domain: symbols.domain_names(symbols.get(v)),
-        sign: Sign::of(super::derive::kind(symbols, v)).word(),
+        domain: scope.symbols.domain_names(scope.get(v)),
+        sign: Sign::of(super::derive::kind(scope.symbols, v)).word(),
         multiplier_of: None,
     });
     let multipliers = f.multipliers.iter().map(|m| AlgebraVariable {
@@ -250,19 +248,18 @@ pub fn algebra(symbols: &Symbols, store: &Store, f: &Formulation) -> Algebra {
 
 /// Puts names for numbers.
 struct Naming<'a> {
-    symbols: &'a Symbols,
-    store: &'a Store,
+    scope: Scope<'a>,
     f: &'a Formulation,
     names: Names<'a>,
 }
 
 impl Naming<'_> {
     fn name(&self, s: SymbolId) -> String {
-        self.symbols.get(s).name.to_string()
+        self.scope.get(s).name.to_string()
     }
 
     fn variable(&self, v: Variable) -> String {
-        self.f.variable(self.symbols, v)
+        self.f.variable(self.scope.symbols, v)
     }
 
     /// The equation without its terms; its indices have names until the number is given to [`Names::leave`].
@@ -301,7 +298,7 @@ impl Naming<'_> {
     fn index(&mut self, p: &Part) -> Index {
         match p {
             Part::Index(k) => Index::Index(self.names.of(*k).to_string()),
-            Part::Label(l) => Index::Label(self.store.universe.name(*l).to_string()),
+            Part::Label(l) => Index::Label(self.scope.store.universe.name(*l).to_string()),
             Part::Singleton(s, _) => Index::Singleton(self.name(*s)),
             Part::Lag(l) => Index::Lag {
                 base: Box::new(self.index(&l.base)),

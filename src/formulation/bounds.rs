@@ -125,22 +125,13 @@ pub fn assigned(
 }
 
 /// Kinds, signs and bounds of a formulation's variables; `relaxed`: discrete ones are not.
-pub fn known(
-    s: &mut Setter,
-    symbols: &Symbols,
-    f: &Formulation,
-    bounds: &[Assigned],
-    relaxed: bool,
-) -> Vec<Known> {
+pub fn known(s: &mut Setter, f: &Formulation, bounds: &[Assigned], relaxed: bool) -> Vec<Known> {
+    let symbols = s.scope.symbols;
     let mut out = Vec::new();
     for &v in &f.own {
         let mine: Vec<&Assigned> = bounds.iter().filter(|b| b.variable == v).collect();
         let covered = |o: u32| mine.iter().any(|b| b.offset == o && b.covers);
-        let base = over_domain(
-            symbols,
-            s.variable(Variable::Own(v)),
-            &domain_of(symbols, v),
-        );
+        let base = variable(symbols, v);
         let mut say = |origin, formula| {
             out.push(Known {
                 variable: v,

@@ -3,7 +3,7 @@
 use super::derive::domain_of;
 use super::text::attribute_name;
 use super::tree::*;
-use super::{NewData, Row};
+use super::{NewData, Row, Scope};
 use crate::check::node::{SymbolId, TableId};
 use crate::check::symbols::{DomainPosition, Store, SymbolKind, Symbols, UNIVERSE};
 use crate::data::input::{Input, InputData, Keys};
@@ -43,8 +43,7 @@ pub fn quoted(text: &str) -> String {
 
 /// What a derived model needs of the user's data.
 pub struct Data<'a> {
-    symbols: &'a Symbols,
-    store: &'a Store,
+    scope: Scope<'a>,
     sets: BTreeSet<SymbolId>,
     parameters: BTreeSet<SymbolId>,
     attributes: BTreeSet<(SymbolId, u32)>,
@@ -52,10 +51,9 @@ pub struct Data<'a> {
 
 impl<'a> Data<'a> {
     /// Nothing yet.
-    pub fn new(symbols: &'a Symbols, store: &'a Store) -> Self {
+    pub fn new(scope: Scope<'a>) -> Self {
         Self {
-            symbols,
-            store,
+            scope,
             sets: BTreeSet::new(),
             parameters: BTreeSet::new(),
             attributes: BTreeSet::new(),
@@ -64,16 +62,16 @@ impl<'a> Data<'a> {
 
     /// A set or an alias, with the sets it is a subset of.
     pub fn set(&mut self, s: SymbolId) {
-        if s == UNIVERSE || !self.symbols.get(s).is_set() || !self.sets.insert(s) {
+        if s == UNIVERSE || !self.scope.get(s).is_set() || !self.sets.insert(s) {
             return;
         }
-        self.set(self.symbols.root(s));
+        self.set(self.scope.symbols.root(s));
         self.domain_of(s);
     }
 
     /// The sets that a symbol is declared over.
     pub fn domain_of(&mut self, s: SymbolId) {
-        for p in &self.symbols.get(s).domain {
+        for p in &self.scope.get(s).domain {
             if let DomainPosition::Set(d) = p {
                 self.set(*d);
             }
@@ -123,32 +121,32 @@ impl<'a> Data<'a> {
     pub fn statements(&self, out: &mut Statements) {
         self.order(out);
         for &s in &self.sets {
-            let symbol = self.symbols.get(s);
+            let symbol = self.scope.get(s);
             if let SymbolKind::Alias(root) = symbol.kind {
                 let root = match root {
                     UNIVERSE => "*".to_string(),
-                    r => self.symbols.get(r).name.to_string(),
+                    r => self.scope.get(r).name.to_string(),
                 };
                 let _ = writeln!(out.text, "Alias ({root},{});", symbol.name);
                 continue;
             }
             let singleton = matches!(symbol.kind, SymbolKind::Set { singleton: true });
             let word = if singleton { "Singleton set" } else { "Set" };
-            let table = self.store.table(symbol.table);
+            let table = self.scope.store.table(symbol.table);
             let head = self.head(s, &symbol.name);
             let keys = records(table).map(|(k, _)| (k.to_vec(), 1.0));
             out.records(word, &head, &symbol.text, true, keys);
         }
         for &p in &self.parameters {
-            let symbol = self.symbols.get(p);
+            let symbol = self.scope.get(p);
             let head = self.head(p, &symbol.name);
-            let all = records(self.store.table(symbol.table)).map(|(k, v)| (k.to_vec(), v));
+            let all = records(self.scope.store.table(symbol.table)).map(|(k, v)| (k.to_vec(), v));
             out.records("Parameter", &head, &symbol.text, false, all);
         }
         for &(s, offset) in &self.attributes {
-            let symbol = self.symbols.get(s);
-            let table = self.store.table(symbol.table + offset);
-            let head = self.head(s, &attribute_name(self.symbols, s, offset));
+            let symbol = self.scope.get(s);
+            let table = self.scope.store.table(symbol.table + offset);
+            let head = self.head(s, &attribute_name(self.scope.symbols, s, offset));
             let word = crate::check::functions::attribute_word(offset);
             let text = format!("{}.{word} at the solve", symbol.name);
             let default = table.default_value();
@@ -159,8 +157,8 @@ impl<'a> Data<'a> {
             }
             // What is not stored has another value than 0.
             let mut keys = vec![Vec::new()];
-            for set in domain_of(self.symbols, s) {
-                let members = self.store.table(self.symbols.get(set).table);
+            for set in domain_of(self.scope.symbols, s) {
+                let members = self.scope.table(set);
                 let longer = |k: &Vec<Label>| {
                     let k = k.clone();
                     records(members).map(move |(m, _)| [k.as_slice(), m].concat())
@@ -179,7 +177,7 @@ impl<'a> Data<'a> {
     /// What of it has other records elsewhere, by name.
     pub fn changed<'t>(&self, other: &dyn Fn(TableId) -> Option<&'t Table>) -> Vec<String> {
         let differs = |table: TableId, is_set: bool| {
-            let own = self.store.table(table);
+            let own = self.scope.store.table(table);
             let value = |v: f64| if is_set { 0 } else { v.to_bits() };
             let same = |o: &Table| {
                 let mut pairs = records(own).zip(records(o));
@@ -187,7 +185,7 @@ impl<'a> Data<'a> {
             };
             other(table).is_some_and(|o| !same(o))
         };
-        let symbol = |s: &SymbolId| self.symbols.get(*s);
+        let symbol = |s: &SymbolId| self.scope.get(*s);
         let sets = self.sets.iter().filter(|s| differs(symbol(s).table, true));
         let parameters = self
             .parameters
@@ -206,10 +204,10 @@ impl<'a> Data<'a> {
         let mut seen: FxHashSet<Label> = FxHashSet::default();
         let mut order: Vec<Label> = Vec::new();
         for &s in &self.sets {
-            if matches!(self.symbols.get(s).kind, SymbolKind::Alias(_)) {
+            if matches!(self.scope.get(s).kind, SymbolKind::Alias(_)) {
                 continue;
             }
-            for (k, _) in records(self.store.table(self.symbols.get(s).table)) {
+            for (k, _) in records(self.scope.table(s)) {
                 order.extend(k.iter().filter(|l| seen.insert(**l)));
             }
         }
@@ -218,7 +216,7 @@ impl<'a> Data<'a> {
         }
         order.sort_unstable();
         let mut name = "labels_in_order".to_string();
-        while self.symbols.find(&name).is_some() {
+        while self.scope.symbols.find(&name).is_some() {
             name.push('_');
         }
         let labels = order.into_iter().map(|l| (vec![l], 1.0));
@@ -227,7 +225,7 @@ impl<'a> Data<'a> {
     }
 
     fn head(&self, s: SymbolId, name: &str) -> String {
-        head(self.symbols, name, &domain_of(self.symbols, s))
+        head(self.scope.symbols, name, &domain_of(self.scope.symbols, s))
     }
 }
 
@@ -247,8 +245,7 @@ fn records(t: &Table) -> impl Iterator<Item = (&[Label], f64)> {
 
 /// Statements that declare data, and the data: in the text, or apart from it.
 pub struct Statements<'a> {
-    symbols: &'a Symbols,
-    store: &'a Store,
+    scope: Scope<'a>,
     /// The text.
     pub text: String,
     /// Where the records of what has indices go that are not to be written.
@@ -257,14 +254,9 @@ pub struct Statements<'a> {
 
 impl<'a> Statements<'a> {
     /// Nothing yet.
-    pub fn new(
-        symbols: &'a Symbols,
-        store: &'a Store,
-        apart: Option<&'a mut Vec<Arc<Input>>>,
-    ) -> Self {
+    pub fn new(scope: Scope<'a>, apart: Option<&'a mut Vec<Arc<Input>>>) -> Self {
         Self {
-            symbols,
-            store,
+            scope,
             text: String::new(),
             apart,
         }
@@ -273,7 +265,7 @@ impl<'a> Statements<'a> {
     /// Data that a derivation introduces.
     pub fn introduced(&mut self, d: &NewData) {
         let word = if d.is_set { "Set" } else { "Parameter" };
-        let head = head(self.symbols, &d.name, &d.domain);
+        let head = head(self.scope.symbols, &d.name, &d.domain);
         self.records(word, &head, &d.text, d.is_set, d.records.iter().cloned());
     }
 
@@ -295,7 +287,7 @@ impl<'a> Statements<'a> {
         if let Some(apart) = self.apart.as_mut().filter(|_| has_indices) {
             out.push_str(";\n");
             let name = head.split('(').next().unwrap_or_default();
-            apart.push(Arc::new(input(self.store, name, is_set, records)));
+            apart.push(Arc::new(input(self.scope.store, name, is_set, records)));
             return;
         }
         let mut any = false;
@@ -306,7 +298,7 @@ impl<'a> Statements<'a> {
                 if n > 0 {
                     out.push('.');
                 }
-                let name = self.store.universe.name(*l);
+                let name = self.scope.store.universe.name(*l);
                 match name.contains('\'') {
                     true => out.push_str(&quoted(name)),
                     false => out.extend(["'", name, "'"]),

@@ -5,9 +5,9 @@ use super::gradient::{Term, gradient};
 use super::invert::{Inverted, invert, target_sets};
 use super::lower::Equation;
 use super::tree::*;
-use super::{Formulation, Multiplier, NewData, Origin, Sign};
+use super::{Formulation, Multiplier, NewData, Origin, Scope, Sign};
 use crate::check::node::SymbolId;
-use crate::check::symbols::{DomainPosition, Store, SymbolKind, Symbols, UNIVERSE};
+use crate::check::symbols::{DomainPosition, SymbolKind, Symbols, UNIVERSE};
 use crate::run::Generated;
 use crate::syntax::ast::{ModelItem, VariableKind};
 use rustc_hash::FxHashSet;
@@ -58,10 +58,8 @@ pub struct Eliminated {
 
 /// A derivation at work.
 pub struct Derivation<'a> {
-    /// All names.
-    pub symbols: &'a Symbols,
-    /// Data as they were at the solve.
-    pub store: &'a Store,
+    /// Names, and data as they were at the solve.
+    pub scope: Scope<'a>,
     /// The model.
     pub primal: &'a Primal,
     /// What comes out.
@@ -86,21 +84,23 @@ pub struct Derivation<'a> {
 impl<'a> Derivation<'a> {
     /// Begins; `Err` says which equation has no derivatives, and why.
     pub fn new(
-        symbols: &'a Symbols,
-        store: &'a Store,
+        scope: Scope<'a>,
         primal: &'a Primal,
         name: String,
         using: &str,
     ) -> Result<Self, (usize, String)> {
-        let taken = symbols.iter().map(|(_, s)| s.name.to_lowercase()).collect();
+        let taken = scope
+            .symbols
+            .iter()
+            .map(|(_, s)| s.name.to_lowercase())
+            .collect();
         let mut indices = primal.indices.clone();
         let mut terms = Vec::new();
         for (k, e) in primal.equations.iter().enumerate() {
             terms.push(gradient(&e.left, &e.right, &mut indices).map_err(|why| (k, why))?);
         }
         let mut d = Self {
-            symbols,
-            store,
+            scope,
             primal,
             out: Formulation {
                 name,
@@ -139,12 +139,12 @@ impl<'a> Derivation<'a> {
             self.all_bind = false;
             let relation = |i: &u32| &g.instance.rows.relation[*i as usize];
             let binding = (b.start..b.start + b.len).filter(|i| binds(relation(i)));
-            let name = self.symbols.get(e.symbol).name.to_string();
+            let name = self.scope.get(e.symbol).name.to_string();
             let unique = self.fresh(&format!("binding_{name}"));
             self.out.data.push(NewData {
                 name: unique,
                 text: format!("rows of {name} with a finite right side"),
-                domain: domain_of(self.symbols, e.symbol),
+                domain: domain_of(self.scope.symbols, e.symbol),
                 is_set: !e.key.is_empty(),
                 records: binding.map(|i| (b.key(i).to_vec(), 1.0)).collect(),
             });
@@ -227,15 +227,15 @@ impl<'a> Derivation<'a> {
     /// Where the text pairs an equation with a variable that is not in this model, that variable is its multiplier's name.
     fn names_of_text(&self) -> Vec<Option<SymbolId>> {
         let mut pairs: Vec<(SymbolId, SymbolId)> = Vec::new();
-        for (_, s) in self.symbols.iter() {
+        for (_, s) in self.scope.symbols.iter() {
             let SymbolKind::Model(m) = &s.kind else {
                 continue;
             };
             for item in m.items.iter().flatten() {
                 if let ModelItem::Pair { rows, column } = item
-                    && let Some(v) = self.symbols.find(&column.name)
+                    && let Some(v) = self.scope.symbols.find(&column.name)
                 {
-                    let rows = rows.iter().filter_map(|r| self.symbols.find(&r.name));
+                    let rows = rows.iter().filter_map(|r| self.scope.symbols.find(&r.name));
                     pairs.extend(rows.map(|r| (r, v)));
                 }
             }
@@ -246,9 +246,9 @@ impl<'a> Derivation<'a> {
         };
         let mut names: Vec<Option<SymbolId>> = Vec::new();
         for e in &self.primal.equations {
-            let dim = self.symbols.get(e.symbol).dim();
+            let dim = self.scope.get(e.symbol).dim();
             let of = |p: &&(SymbolId, SymbolId)| {
-                p.0 == e.symbol && !used(p.1) && self.symbols.get(p.1).dim() == dim
+                p.0 == e.symbol && !used(p.1) && self.scope.get(p.1).dim() == dim
             };
             let name = pairs.iter().find(of).map(|p| p.1);
             let name = name.filter(|v| !names.contains(&Some(*v)));
@@ -270,7 +270,7 @@ impl<'a> Derivation<'a> {
         };
         let equations = &self.primal.equations;
         let opposite = equations.iter().zip(&names).any(|(e, name)| {
-            let kind = name.map(|v| &self.symbols.get(v).kind);
+            let kind = name.map(|v| &self.scope.get(v).kind);
             matches!(
                 (kind, sign(e)),
                 (
@@ -289,10 +289,10 @@ impl<'a> Derivation<'a> {
                 continue;
             };
             let name = match names[k] {
-                Some(v) => self.symbols.get(v).name.to_string(),
-                None => self.fresh(&format!("y_{}", self.symbols.get(e.symbol).name)),
+                Some(v) => self.scope.get(v).name.to_string(),
+                None => self.fresh(&format!("y_{}", self.scope.get(e.symbol).name)),
             };
-            let domain = domain_of(self.symbols, e.symbol);
+            let domain = domain_of(self.scope.symbols, e.symbol);
             self.multipliers[k] = Some(self.out.multipliers.len());
             self.out.multipliers.push(Multiplier {
                 name,
@@ -327,7 +327,7 @@ impl<'a> Derivation<'a> {
 
     /// The declared kind of a variable.
     pub fn kind(&self, v: SymbolId) -> VariableKind {
-        kind(self.symbols, v)
+        kind(self.scope.symbols, v)
     }
 
     /// Whether an equation is linear in the variables.
@@ -389,14 +389,14 @@ impl<'a> Derivation<'a> {
             .chain(cost_terms.iter().map(|t| t.key.as_slice()))
             .collect();
         let sets = target_sets(
-            self.symbols,
+            self.scope.symbols,
             &self.out.indices,
-            &self.symbols.get(v).domain,
+            &self.scope.get(v).domain,
             &references,
         );
         let target: Vec<IndexId> = sets.iter().map(|s| self.out.indices.add(*s)).collect();
         let turned = |t: &Term, binder: &Binder, y: Option<&Expr>| {
-            invert(self.symbols, &self.out.indices, t, binder, y, &target)
+            invert(self.scope.symbols, &self.out.indices, t, binder, y, &target)
         };
         let rows = terms.iter().map(|(k, t)| {
             let y = self.multiplier_of(*k);
@@ -440,7 +440,7 @@ impl<'a> Derivation<'a> {
         row: &ColumnRow,
         places: &[usize],
     ) -> Option<Expr> {
-        let size = |s: &SymbolId| self.store.table(self.symbols.get(*s).table).len();
+        let size = |s: &SymbolId| self.scope.store.table(self.scope.get(*s).table).len();
         let all: usize = row.sets.iter().map(size).product();
         if places.len() == all {
             return None;
@@ -450,7 +450,7 @@ impl<'a> Derivation<'a> {
         self.out.data.push(NewData {
             name,
             text,
-            domain: domain_of(self.symbols, v),
+            domain: domain_of(self.scope.symbols, v),
             is_set: true,
             records: keys.into_iter().map(|k| (k, 1.0)).collect(),
         });

@@ -6,7 +6,7 @@ use super::derive::{Derivation, Primal};
 use super::math::{Math, name};
 use super::page::{Block, Formula, Page, Setter, formulas};
 use super::tree::{Expr, Variable, sum, sum_over};
-use super::{Formulation, dual, kkt, side, text};
+use super::{Formulation, Scope, dual, kkt, side, text};
 use crate::check::node::{AggregateOp, EquationDef, Node, NodeKind, SymbolId};
 use crate::check::visit::Visitor;
 use crate::diag::Diagnostic;
@@ -100,13 +100,13 @@ impl Derived {
             self.title, primal.name
         );
         let f = &self.formulation;
-        text::model(&m.symbols, &m.store, f, include, &head, true, None)
+        text::model(Scope::of(m), f, include, &head, true, None)
     }
 
     /// That a model which includes the text is another one, where the text goes on and changes its data.
     pub fn changed_later(&self, m: &Machine, studied: &Studied) -> Option<String> {
         let at_end = |t| studied.at_end(t);
-        let changed = text::changed(&m.symbols, &m.store, &self.formulation, &at_end);
+        let changed = text::changed(Scope::of(m), &self.formulation, &at_end);
         let (names, last) = (changed.join(", "), changed.last()?);
         let verb = if *last == names { "has" } else { "have" };
         Some(format!(
@@ -131,23 +131,22 @@ fn linear_dual(
         let message = format!("the dual cannot be derived: {why}");
         of_solve("E0431", studied, message)
     };
-    let (symbols, store) = (&m.symbols, &m.store);
-    let shown = dual::dual(symbols, store, primal, true).map_err(failed)?;
-    let formulation = dual::dual(symbols, store, primal, false).map_err(failed)?;
-    let d =
-        Derivation::new(symbols, store, primal, String::new(), "lp").map_err(|e| failed(e.1))?;
+    let scope = Scope::of(m);
+    let shown = dual::dual(scope, primal, true).map_err(failed)?;
+    let formulation = dual::dual(scope, primal, false).map_err(failed)?;
+    let d = Derivation::new(scope, primal, String::new(), "lp").map_err(|e| failed(e.1))?;
     let mut own = side::own(&d);
     let assigned = bounds::assigned(m, &m.code, &mut own, Some(studied.span));
-    let mut page = side::page(symbols, store, &own, &assigned, &shown);
+    let mut page = side::page(scope, &own, &assigned, &shown);
     match no_optimum(studied) {
-        None => page.extend(side::slackness(symbols, store, primal, shown.flipped)),
+        None => page.extend(side::slackness(scope, primal, shown.flipped)),
         words => page.extend(words),
     }
     Ok(Derived {
         title: format!("The dual of {}", primal.name),
         page,
         formulation,
-        check: check.then(|| match check::checked_dual(symbols, store, primal) {
+        check: check.then(|| match check::checked_dual(scope, primal) {
             Ok((_, c)) => c,
             Err(why) => not_generated(&why),
         }),
@@ -269,13 +268,13 @@ fn conditions(
     check: bool,
     write: bool,
 ) -> Result<Derived, Box<Diagnostic>> {
-    let (symbols, store) = (&m.symbols, &m.store);
+    let scope = Scope::of(m);
     refuse_discrete(m, primal, |message| of_solve("E0432", studied, message))?;
-    let mut f = kkt::kkt(symbols, store, primal, false, true)
-        .map_err(|r| refuse_kkt(m, primal, studied, r))?;
+    let mut f =
+        kkt::kkt(scope, primal, false, true).map_err(|r| refuse_kkt(m, primal, studied, r))?;
     let mut page = vec![Block::Heading(format!("Lagrangian of {}", primal.name))];
     if let Some(l) = lagrangian(m, primal) {
-        let mut own = Setter::new(symbols, store, &l.1);
+        let mut own = Setter::new(scope, &l.1);
         let math = Math::Row(vec![
             Math::Name(name("L")),
             Math::Operator("="),
@@ -287,16 +286,16 @@ fn conditions(
         "Optimality conditions (Karush, Kuhn, Tucker)".into(),
     ));
     let assigned = bounds::assigned(m, &m.code, &mut f, Some(studied.span));
-    let mut s = Setter::new(symbols, store, &f);
-    page.extend(formulas(&mut s, symbols, &f));
-    let known = bounds::known(&mut s, symbols, &f, &assigned, true);
+    let mut s = Setter::new(scope, &f);
+    page.extend(formulas(&mut s, &f));
+    let known = bounds::known(&mut s, &f, &assigned, true);
     page.extend(bounds::with(known, !f.multipliers.is_empty()));
     page.extend(f.notes.iter().cloned().map(Block::Words));
     page.extend(no_optimum(studied));
     // What is written is what was generated.
     let (formulation, check) = match check || write {
         false => (f, None),
-        true => match check::checked_kkt(symbols, store, primal) {
+        true => match check::checked_kkt(scope, primal) {
             Ok((written, c)) => (written, check.then_some(c)),
             Err(why) => (f, check.then(|| not_generated(&why))),
         },
@@ -312,7 +311,7 @@ fn conditions(
 
 /// The Lagrangian, and the formulation whose names it uses.
 fn lagrangian(m: &Machine, primal: &Primal) -> Option<(Expr, Formulation)> {
-    let mut d = Derivation::new(&m.symbols, &m.store, primal, String::new(), "nlp").ok()?;
+    let mut d = Derivation::new(Scope::of(m), primal, String::new(), "nlp").ok()?;
     d.multipliers_of_rows(true);
     let function = match (&d.eliminated, primal.objective) {
         (Some(o), _) => o.function.clone(),

@@ -7,27 +7,22 @@ use super::derive::{ColumnRow, Derivation, Primal, domain_of};
 use super::kkt::{start_of_levels, start_of_multiplier};
 use super::lower::Equation;
 use super::tree::*;
-use super::{Formulation, Multiplier, Origin, Row, Sign};
+use super::{Formulation, Multiplier, Origin, Row, Scope, Sign};
 use crate::check::node::SymbolId;
-use crate::check::symbols::{Store, Symbols, attribute};
+use crate::check::symbols::attribute;
 use crate::data::value::EPS;
 
 /// Derives the dual of a linear or convex quadratic model. `as_in_text`: multipliers have the signs of the variables that
 /// the text pairs with their rows. `Err` says why there is none.
-pub fn dual(
-    symbols: &Symbols,
-    store: &Store,
-    primal: &Primal,
-    as_in_text: bool,
-) -> Result<Formulation, String> {
+pub fn dual(scope: Scope, primal: &Primal, as_in_text: bool) -> Result<Formulation, String> {
     let Some((sense, _)) = primal.objective else {
         return Err("the model has no objective: nothing is minimised or maximised".into());
     };
     let name = format!("dual_{}", primal.name);
     let is_linear = primal.generated.instance.is_linear();
     let using = if is_linear { "lp" } else { "qcp" };
-    let mut d = Derivation::new(symbols, store, primal, name.clone(), using)
-        .map_err(|(k, why)| format!("`{}`: {why}", symbols.get(primal.equations[k].symbol).name))?;
+    let mut d = Derivation::new(scope, primal, name.clone(), using)
+        .map_err(|(k, why)| format!("`{}`: {why}", scope.get(primal.equations[k].symbol).name))?;
     d.out.name = d.fresh(&name);
     d.multipliers_of_rows(as_in_text);
     let mut objective = Vec::new();
@@ -41,7 +36,7 @@ pub fn dual(
                 // The product of a multiplier and a quadratic form.
                 d.out.using = "nlp".into();
                 right_side_at(&primal.equations[k]).map_err(|why| {
-                    format!("`{}`: {why}", symbols.get(primal.equations[k].symbol).name)
+                    format!("`{}`: {why}", scope.get(primal.equations[k].symbol).name)
                 })?
             }
         };
@@ -174,10 +169,10 @@ fn points(d: &mut Derivation) {
     }
     let first = d.out.multipliers.len();
     for &v in &found {
-        let name = d.fresh(&format!("at_{}", d.symbols.get(v).name));
+        let name = d.fresh(&format!("at_{}", d.scope.get(v).name));
         d.out.multipliers.push(Multiplier {
             name,
-            domain: domain_of(d.symbols, v),
+            domain: domain_of(d.scope.symbols, v),
             sign: Sign::Free,
             origin: Origin::Point(v),
         });
@@ -232,7 +227,7 @@ fn column(d: &mut Derivation, v: SymbolId) -> Result<Vec<(bool, Expr)>, String> 
         objective.extend(worth.map(|w| (false, w)));
     }
     let (left, minimum) = (sum(left), d.is_minimum());
-    let name = d.symbols.get(v).name.to_string();
+    let name = d.scope.get(v).name.to_string();
     for (n, class) in classes.iter().enumerate() {
         let word = class.sign.word();
         let (suffix, guard) = match classes.len() {
@@ -257,7 +252,7 @@ fn column(d: &mut Derivation, v: SymbolId) -> Result<Vec<(bool, Expr)>, String> 
         d.out.rows.push(Row {
             name: row_name,
             text: format!("dual of {name}"),
-            domain: domain_of(d.symbols, v),
+            domain: domain_of(d.scope.symbols, v),
             key: row.key(),
             binder: row.binder(guard),
             left: left.clone(),
@@ -294,8 +289,8 @@ fn limits(d: &mut Derivation, v: SymbolId, columns: &Columns, classes: &[Class])
         }
     }
     if let Some(&n) = missing.first() {
-        let name = &d.symbols.get(v).name;
-        let record = super::text::record(d.store, name, columns.key(n));
+        let name = &d.scope.get(v).name;
+        let record = super::text::record(d.scope.store, name, columns.key(n));
         let others = match missing.len() {
             1 => String::new(),
             n => format!(" (and {} more like it)", n - 1),
@@ -322,7 +317,7 @@ fn multiplier_of_bounds(
     row: &ColumnRow,
     (origin, places): &Bounds,
 ) -> (Expr, Option<Expr>) {
-    let name = d.symbols.get(v).name.to_string();
+    let name = d.scope.get(v).name.to_string();
     let (which, text, sign, data) = about(*origin);
     let sign = if d.is_minimum() {
         sign
@@ -331,7 +326,7 @@ fn multiplier_of_bounds(
     };
     let multiplier = Multiplier {
         name: d.fresh(&format!("y_{which}_{name}")),
-        domain: domain_of(d.symbols, v),
+        domain: domain_of(d.scope.symbols, v),
         sign: d.flipped(sign),
         origin: *origin,
     };

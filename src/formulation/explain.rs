@@ -2,13 +2,12 @@
 
 mod said;
 
+use super::Scope;
 use super::derive::Primal;
 use super::math::explained;
 use super::range::{self, Ranges, RowRange};
 use super::side::{costs, short};
-use super::text::record;
 use crate::check::node::SymbolId;
-use crate::check::symbols::{Store, Symbols};
 use crate::model::instance::{ColumnKind, Relation, Sense};
 use crate::model::origin::Blocks;
 use crate::run::{Machine, Studied};
@@ -21,10 +20,8 @@ const NONE: f64 = 1e-9;
 
 /// What is asked of a model in words.
 pub struct Explained<'a> {
-    /// All names.
-    pub symbols: &'a Symbols,
-    /// Data.
-    pub store: &'a Store,
+    /// Names, and data as they were at the solve.
+    pub scope: Scope<'a>,
     /// The model with its answer.
     pub primal: &'a Primal,
     /// How its solve ended.
@@ -46,8 +43,7 @@ pub fn of(m: &Machine, primal: &Primal, studied: &Studied) -> (Vec<String>, Opti
         false => None,
     };
     let words = explain(&Explained {
-        symbols: &m.symbols,
-        store: &m.store,
+        scope: Scope::of(m),
         primal,
         status: answer.map_or(ModelStatus::NoSolution, |a| a.1.status),
         ranges: ranges.as_ref(),
@@ -77,9 +73,9 @@ pub fn explain(e: &Explained) -> Vec<String> {
 impl Explained<'_> {
     /// A symbol with its explanatory text.
     fn described(&self, s: SymbolId) -> String {
-        let symbol = self.symbols.get(s);
+        let symbol = self.scope.get(s);
         let (_, words, unit) = explained(&symbol.text);
-        let domain = self.symbols.domain_names(symbol);
+        let domain = self.scope.symbols.domain_names(symbol);
         let name = match domain.is_empty() {
             true => symbol.name.to_string(),
             false => format!("{}({})", symbol.name, domain.join(",")),
@@ -92,14 +88,12 @@ impl Explained<'_> {
     }
 
     fn unit(&self, s: SymbolId) -> String {
-        let unit = explained(&self.symbols.get(s).text).2;
+        let unit = explained(&self.scope.get(s).text).2;
         unit.map_or(String::new(), |u| format!(" {u}"))
     }
 
     fn name(&self, blocks: &Blocks, i: usize) -> String {
-        let b = blocks.of(i as u32);
-        let name = &self.symbols.get(b.symbol).name;
-        record(self.store, name, b.key(i as u32))
+        self.scope.called(blocks, i)
     }
 
     fn decided(&self) -> String {
@@ -194,7 +188,7 @@ impl Explained<'_> {
                     Sense::Minimize => "smallest",
                     Sense::Maximize => "largest",
                 },
-                self.symbols.get(z).name,
+                self.scope.get(z).name,
                 if proved { "" } else { " found" },
                 short(a.level[column]),
                 self.unit(z)
@@ -250,7 +244,7 @@ impl Explained<'_> {
             {
                 continue;
             }
-            let objective = &self.symbols.get(z).name;
+            let objective = &self.scope.get(z).name;
             let (lead, number, words) = match discrete {
                 true => Default::default(),
                 false => worth(range, price, objective, g.instance.is_linear()),
@@ -309,7 +303,7 @@ impl Explained<'_> {
         if !g.instance.is_linear() || self.discrete() > 0 {
             return Vec::new();
         }
-        let objective = &self.symbols.get(z).name;
+        let objective = &self.scope.get(z).name;
         let c = &g.instance.columns;
         let (_, cost) = costs(&g.instance);
         let mut by_column = self.ranges.map_or(&[][..], |r| &r.costs).iter().peekable();

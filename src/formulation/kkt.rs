@@ -5,9 +5,8 @@
 
 use super::derive::{Derivation, Primal, domain_of};
 use super::tree::*;
-use super::{Assignment, Formulation, NewData, Row};
+use super::{Assignment, Formulation, NewData, Row, Scope};
 use crate::check::node::SymbolId;
-use crate::check::symbols::{Store, Symbols};
 use crate::data::table::Table;
 use crate::data::universe::Label;
 use crate::data::value::EPS;
@@ -20,8 +19,7 @@ pub type Refusal = (Option<usize>, String);
 /// whose terms cancel are not empty. `as_in_text`: multipliers have the signs of the variables that the text pairs with
 /// their rows.
 pub fn kkt(
-    symbols: &Symbols,
-    store: &Store,
+    scope: Scope,
     primal: &Primal,
     keep: bool,
     as_in_text: bool,
@@ -31,8 +29,8 @@ pub fn kkt(
         return Err((None, why.into()));
     }
     let name = format!("kkt_{}", primal.name);
-    let mut d = Derivation::new(symbols, store, primal, name.clone(), "mcp")
-        .map_err(|(k, why)| (Some(k), why))?;
+    let mut d =
+        Derivation::new(scope, primal, name.clone(), "mcp").map_err(|(k, why)| (Some(k), why))?;
     d.out.name = d.fresh(&name);
     d.multipliers_of_rows(as_in_text);
     for v in d.variables() {
@@ -44,18 +42,8 @@ pub fn kkt(
     }
     // A variable whose terms cancel has no column, and stands in the text all the same.
     let mut own = std::mem::take(&mut d.out.own);
-    let mut see = |e: &Expr| {
-        e.walk(&mut |e| {
-            if let Expr::Variable(Variable::Own(v), _) = e
-                && !own.contains(v)
-            {
-                own.push(*v);
-            }
-        });
-    };
-    for r in &d.out.rows {
-        see(&r.left);
-        see(&r.right);
+    for e in d.out.rows.iter().flat_map(|r| [&r.left, &r.right]) {
+        e.own_variables(&mut own);
     }
     d.out.own = own;
     for v in d.variables() {
@@ -68,7 +56,7 @@ pub fn kkt(
 fn stationarity(d: &mut Derivation, v: SymbolId, keep: bool) -> Result<(), String> {
     let row = d.column_row(v)?;
     let columns = d.columns(v);
-    let name = d.symbols.get(v).name.to_string();
+    let name = d.scope.get(v).name.to_string();
     let each = |test: &dyn Fn(f64, f64) -> bool| match columns.alike {
         Some((lower, upper)) => test(lower, upper),
         None => columns.bounds().all(|(lower, upper)| test(lower, upper)),
@@ -102,7 +90,7 @@ fn stationarity(d: &mut Derivation, v: SymbolId, keep: bool) -> Result<(), Strin
     d.out.rows.push(Row {
         name: row_name,
         text: format!("stationarity in {name}"),
-        domain: domain_of(d.symbols, v),
+        domain: domain_of(d.scope.symbols, v),
         key: row.key(),
         binder: row.binder(guard),
         left,
@@ -121,7 +109,7 @@ fn is_exact(
     target: &[IndexId],
     columns: usize,
 ) -> bool {
-    let table = |s: SymbolId| -> &Table { d.store.table(d.symbols.rooted(s).table) };
+    let table = |s: SymbolId| -> &Table { d.scope.store.table(d.scope.symbols.rooted(s).table) };
     let mut tests: Vec<(&Table, Vec<usize>)> = Vec::new();
     for c in conditions {
         let Expr::Member(s, key) = c else {
@@ -168,7 +156,7 @@ fn feasibility(d: &mut Derivation, k: usize, keep: bool) {
         return;
     };
     let e = &d.primal.equations[k];
-    let name = d.symbols.get(e.symbol).name.to_string();
+    let name = d.scope.get(e.symbol).name.to_string();
     let Some(block) = d.primal.generated.origin.rows.symbol(e.symbol) else {
         // All its rows are empty: there is nothing to hold.
         return;
@@ -181,9 +169,9 @@ fn feasibility(d: &mut Derivation, k: usize, keep: bool) {
             name,
             text: format!(
                 "rows of {} that hold a variable",
-                d.symbols.get(e.symbol).name
+                d.scope.get(e.symbol).name
             ),
-            domain: domain_of(d.symbols, e.symbol),
+            domain: domain_of(d.scope.symbols, e.symbol),
             is_set: true,
             records: rows.iter().map(|&i| (block.key(i).to_vec(), 1.0)).collect(),
         });
@@ -214,8 +202,8 @@ fn feasibility(d: &mut Derivation, k: usize, keep: bool) {
     let row_name = d.fresh(&format!("row_{name}"));
     d.out.rows.push(Row {
         name: row_name,
-        text: d.symbols.get(e.symbol).text.to_string(),
-        domain: domain_of(d.symbols, e.symbol),
+        text: d.scope.get(e.symbol).text.to_string(),
+        domain: domain_of(d.scope.symbols, e.symbol),
         key: e.key.clone(),
         binder,
         left,
@@ -236,17 +224,17 @@ pub fn start_of_multiplier(d: &mut Derivation, equation: usize, multiplier: usiz
     let records: Vec<(Vec<Label>, f64)> = (block.start..block.start + block.len)
         .map(|i| (block.key(i).to_vec(), a.row_marginal[i as usize]))
         .collect();
-    let name = d.symbols.get(symbol).name.to_string();
+    let name = d.scope.get(symbol).name.to_string();
     let target = d.out.multipliers[multiplier].name.clone();
-    let domain = domain_of(d.symbols, symbol);
+    let domain = domain_of(d.scope.symbols, symbol);
     assign(d, &format!("m_{name}"), &target, "l", domain, records);
 }
 
 /// Levels and bounds of a variable as they were at the solve.
 fn start_of_columns(d: &mut Derivation, v: SymbolId) {
     let columns = d.columns(v);
-    let name = d.symbols.get(v).name.to_string();
-    let domain = domain_of(d.symbols, v);
+    let name = d.scope.get(v).name.to_string();
+    let domain = domain_of(d.scope.symbols, v);
     let (lower, upper) = match d.kind(v) {
         VariableKind::Positive => (0.0, f64::INFINITY),
         VariableKind::Negative => (f64::NEG_INFINITY, 0.0),
@@ -285,8 +273,8 @@ pub fn start_of_levels(d: &mut Derivation, v: SymbolId, target: &str) {
     };
     let levels = (b.start..b.start + b.len).map(|j| (b.key(j).to_vec(), a.level[j as usize]));
     let records: Vec<(Vec<Label>, f64)> = levels.collect();
-    let name = d.symbols.get(v).name.to_string();
-    let domain = domain_of(d.symbols, v);
+    let name = d.scope.get(v).name.to_string();
+    let domain = domain_of(d.scope.symbols, v);
     assign(d, &format!("l_{name}"), target, "l", domain, records);
 }
 

@@ -4,10 +4,10 @@
 use super::data::number as shortest;
 use super::names::Names;
 use super::tree::*;
-use super::{Formulation, Row};
+use super::{Formulation, Row, Scope};
 use crate::check::functions::{attribute_word, data_word};
 use crate::check::node::SymbolId;
-use crate::check::symbols::{Store, Symbols, attribute};
+use crate::check::symbols::{Symbols, attribute};
 use rustc_hash::FxHashSet;
 
 /// A piece of a formula.
@@ -140,8 +140,8 @@ pub fn symbol_name(symbols: &Symbols, s: SymbolId) -> Name {
 
 /// Turns expressions into formulas.
 pub struct Setter<'a> {
-    symbols: &'a Symbols,
-    store: &'a Store,
+    /// All names and data.
+    pub scope: Scope<'a>,
     f: &'a Formulation,
     /// Names of indices.
     pub names: Names<'a>,
@@ -157,24 +157,27 @@ mod level {
 
 impl<'a> Setter<'a> {
     /// A setter for the formulas of a formulation.
-    pub fn new(symbols: &'a Symbols, store: &'a Store, f: &'a Formulation) -> Self {
-        let taken: FxHashSet<String> = symbols.iter().map(|(_, s)| s.name.to_lowercase()).collect();
+    pub fn new(scope: Scope<'a>, f: &'a Formulation) -> Self {
+        let taken: FxHashSet<String> = scope
+            .symbols
+            .iter()
+            .map(|(_, s)| s.name.to_lowercase())
+            .collect();
         Self {
-            symbols,
-            store,
+            scope,
             f,
-            names: Names::new(symbols, &f.indices, taken),
+            names: Names::new(scope.symbols, &f.indices, taken),
         }
     }
 
     /// The name of a variable.
     pub fn variable(&self, v: Variable) -> Math {
         Math::Name(match v {
-            Variable::Own(s) => symbol_name(self.symbols, s),
+            Variable::Own(s) => symbol_name(self.scope.symbols, s),
             Variable::Multiplier(n) => {
                 let text = &self.f.multipliers[n].name;
-                match self.symbols.find(text) {
-                    Some(s) => symbol_name(self.symbols, s),
+                match self.scope.symbols.find(text) {
+                    Some(s) => symbol_name(self.scope.symbols, s),
                     None => name(text),
                 }
             }
@@ -182,7 +185,7 @@ impl<'a> Setter<'a> {
     }
 
     fn own(&self, s: SymbolId) -> Math {
-        Math::Name(symbol_name(self.symbols, s))
+        Math::Name(symbol_name(self.scope.symbols, s))
     }
 
     fn indexed(&mut self, base: Math, key: &[Part]) -> Math {
@@ -196,7 +199,7 @@ impl<'a> Setter<'a> {
     fn part(&mut self, p: &Part) -> Math {
         match p {
             Part::Index(k) => Math::Name(name(self.names.of(*k))),
-            Part::Label(l) => Math::Quoted(self.store.universe.name(*l).to_string()),
+            Part::Label(l) => Math::Quoted(self.scope.store.universe.name(*l).to_string()),
             Part::Singleton(s, _) => self.own(*s),
             Part::Lag(l) => {
                 let base = self.part(&l.base);

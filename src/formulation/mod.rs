@@ -31,10 +31,48 @@ pub mod text;
 pub mod tree;
 
 use crate::check::node::SymbolId;
-use crate::check::symbols::Symbols;
+use crate::check::symbols::{Store, Symbol, Symbols};
+use crate::data::table::Table;
 use crate::data::universe::Label;
+use crate::model::origin::Blocks;
+use crate::run::Machine;
 use crate::syntax::ast::VariableKind;
 use tree::{Binder, Expr, Indices, Part, Relation, Sense, Variable};
+
+/// All names, and data as they were at the solve.
+#[derive(Clone, Copy)]
+pub struct Scope<'a> {
+    /// All names.
+    pub symbols: &'a Symbols,
+    /// All data.
+    pub store: &'a Store,
+}
+
+impl<'a> Scope<'a> {
+    /// Those of a run.
+    pub fn of(m: &'a Machine) -> Self {
+        Self {
+            symbols: &m.symbols,
+            store: &m.store,
+        }
+    }
+
+    /// A symbol.
+    pub fn get(self, s: SymbolId) -> &'a Symbol {
+        self.symbols.get(s)
+    }
+
+    /// The records of a symbol.
+    pub fn table(self, s: SymbolId) -> &'a Table {
+        self.store.table(self.get(s).table)
+    }
+
+    /// A row or column, as it is called.
+    pub fn called(self, blocks: &Blocks, i: usize) -> String {
+        let b = blocks.of(i as u32);
+        text::record(self.store, &self.get(b.symbol).name, b.key(i as u32))
+    }
+}
 
 /// The sign of a variable.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

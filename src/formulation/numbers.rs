@@ -5,7 +5,7 @@ use super::page::{Block, Page, Setter};
 use super::side::short;
 use super::text::record;
 use super::tree::*;
-use super::{Formulation, Row};
+use super::{Formulation, Row, Scope};
 use crate::model::instance::{Instance, Kernel, KernelTerm, Op};
 use crate::model::origin::Blocks;
 use crate::run::{Generated, Machine};
@@ -17,7 +17,7 @@ const MAX_COLUMNS: usize = 12;
 /// Puts a written-out row beside each formula of a page, and the table of coefficients behind it if the model is small.
 pub fn add(page: &mut Page, m: &Machine, g: &Generated) {
     let empty = Formulation::default();
-    let mut s = Setter::new(&m.symbols, &m.store, &empty);
+    let mut s = Setter::new(Scope::of(m), &empty);
     for b in page.iter_mut() {
         let Block::Formulas(list) = b else { continue };
         for f in list {
@@ -76,11 +76,7 @@ fn term(g: &Generated, k: &Kernel, t: KernelTerm, number: &dyn Fn(f64) -> Expr) 
         let made = match *op {
             Op::Var(n) => variable(n),
             Op::Const(n) => constant(n),
-            Op::Affine {
-                constant: first,
-                variable: x,
-                terms,
-            } => {
+            Op::Affine(first, x, terms) => {
                 let all = (0..terms)
                     .map(|n| (false, constant(first + 1 + n) * variable(x + n)))
                     .chain([(false, constant(first))]);

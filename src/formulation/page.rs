@@ -73,7 +73,8 @@ pub enum Block {
 pub type Page = Vec<Block>;
 
 /// The parts of a formulation: objective, rows, variables with their signs.
-pub fn formulas(s: &mut Setter, symbols: &Symbols, f: &Formulation) -> Page {
+pub fn formulas(s: &mut Setter, f: &Formulation) -> Page {
+    let symbols = s.scope.symbols;
     let mut out = Vec::new();
     if let Some((sense, e)) = &f.objective {
         let word = match sense {

@@ -5,7 +5,7 @@ use super::derive::domain_of;
 use super::lower::{Equation, Lowering};
 use super::page::{Block, Page, Setter, formulas, legend};
 use super::tree::*;
-use super::{Formulation, Row};
+use super::{Formulation, Row, Scope};
 use crate::check::node::{Code, CodeKind, ModelRow, SolveCode, SymbolId};
 use crate::check::symbols::{SymbolKind, Symbols};
 use crate::check::visit::each_statement;
@@ -201,9 +201,9 @@ pub fn page(
     let in_bounds = bounds.iter().flat_map(bounds::Assigned::expressions);
     let mut out = legend(symbols, &f, in_bounds);
     out.push(Block::Heading(heading(&f)));
-    let mut s = Setter::new(symbols, &m.store, &f);
-    out.extend(formulas(&mut s, symbols, &f));
-    let known = bounds::known(&mut s, symbols, &f, &bounds, f.using.starts_with('r'));
+    let mut s = Setter::new(Scope::of(m), &f);
+    out.extend(formulas(&mut s, &f));
+    let known = bounds::known(&mut s, &f, &bounds, f.using.starts_with('r'));
     out.extend(bounds::with(known, false));
     if let Some(g) = numbers {
         super::numbers::add(&mut out, m, g);

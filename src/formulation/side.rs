@@ -5,9 +5,9 @@ use super::derive::{Derivation, Primal};
 use super::math::{Math, name as name_of, relation_sign, symbol_name};
 use super::page::{Block, Formula, Page, Setter, formulas, over_domain, signed};
 use super::tree::*;
-use super::{Formulation, Multiplier, Origin, Row, Sign};
+use super::{Formulation, Multiplier, Origin, Row, Scope, Sign};
 use crate::check::node::SymbolId;
-use crate::check::symbols::{Store, Symbols};
+use crate::check::symbols::Symbols;
 use crate::solve::nlp::convex::{Shape, shape};
 
 /// More lines of numbers than this are not shown.
@@ -18,7 +18,7 @@ pub fn own(d: &Derivation) -> Formulation {
     let primal = d.primal;
     let rows = primal.equations.iter().enumerate();
     let rows = rows.filter(|(k, _)| !d.is_eliminated(*k));
-    let rows = rows.map(|(_, e)| e.row(d.symbols, Vec::new(), None));
+    let rows = rows.map(|(_, e)| e.row(d.scope.symbols, Vec::new(), None));
     let objective = primal.objective.map(|(sense, z)| match &d.eliminated {
         Some(o) => (sense, o.function.clone()),
         None => (sense, Expr::Variable(Variable::Own(z), Vec::new())),
@@ -35,50 +35,48 @@ pub fn own(d: &Derivation) -> Formulation {
 }
 
 /// Primal, dual, and what is paired with what.
-pub fn page(
-    symbols: &Symbols,
-    store: &Store,
-    primal: &Formulation,
-    bounds: &[Assigned],
-    dual: &Formulation,
-) -> Page {
+pub fn page(scope: Scope, primal: &Formulation, bounds: &[Assigned], dual: &Formulation) -> Page {
     let mut out = vec![Block::Heading(format!("Primal: {}", primal.name))];
-    let mut s = Setter::new(symbols, store, primal);
-    out.extend(formulas(&mut s, symbols, primal));
-    let known = bounds::known(&mut s, symbols, primal, bounds, true);
+    let mut s = Setter::new(scope, primal);
+    out.extend(formulas(&mut s, primal));
+    let known = bounds::known(&mut s, primal, bounds, true);
     let mut lines = Vec::new();
     for &v in &primal.own {
         let before = lines.len();
         let mine = known.iter().filter(|k| k.variable == v);
         lines.extend(mine.map(|k| k.formula.clone()));
         if lines.len() == before {
-            lines.push(Formula::of(sign(symbols, dual, v)));
+            lines.push(Formula::of(sign(scope.symbols, dual, v)));
         }
     }
     out.push(Block::Words("with".into()));
     out.push(Block::Formulas(lines));
     out.push(Block::Heading(format!("Dual: {}", dual.name)));
-    let mut t = Setter::new(symbols, store, dual);
-    out.extend(formulas(&mut t, symbols, dual));
+    let mut t = Setter::new(scope, dual);
+    out.extend(formulas(&mut t, dual));
     out.extend(dual.notes.iter().map(|n| Block::Words(n.clone())));
     out.push(Block::Heading("What is paired with what".into()));
     let mut pairs = Vec::new();
     // `limit_i ≤ …`
     let open = |name: &str, domain: &[SymbolId], relation: Relation| {
-        let left = over_domain(symbols, Math::Name(name_of(name)), domain);
+        let left = over_domain(scope.symbols, Math::Name(name_of(name)), domain);
         let relation = Math::Operator(relation_sign(relation));
         Math::Row(vec![left, relation, Math::Words("…".into())])
     };
     for (n, m) in dual.multipliers.iter().enumerate() {
         let Origin::Row(e) = m.origin else { continue };
-        let name = &*symbols.get(e).name;
+        let name = &*scope.get(e).name;
         let row = primal.rows.iter().find(|r| r.name == name);
         let left = open(name, &m.domain, row.map_or(Relation::Equal, |r| r.relation));
-        let right = over_domain(symbols, t.variable(Variable::Multiplier(n)), &m.domain);
+        let right = over_domain(
+            scope.symbols,
+            t.variable(Variable::Multiplier(n)),
+            &m.domain,
+        );
         pairs.push((left, signed(right, m.sign)));
     }
     for v in &primal.own {
-        let left = sign(symbols, dual, *v);
+        let left = sign(scope.symbols, dual, *v);
         for r in rows_of(dual, *v) {
             pairs.push((left.clone(), open(&r.name, &r.domain, r.relation)));
         }
@@ -93,14 +91,18 @@ pub fn page(
             let left = match (mine.next(), mine.next()) {
                 (Some(one), None) => one.formula.math.clone(),
                 _ => {
-                    let base = Math::Name(symbol_name(symbols, *v));
+                    let base = Math::Name(symbol_name(scope.symbols, *v));
                     let bound = Math::Bar(Box::new(base), upper);
-                    let bound = over_domain(symbols, bound, &m.domain);
-                    let variable = bounds::variable(symbols, *v);
+                    let bound = over_domain(scope.symbols, bound, &m.domain);
+                    let variable = bounds::variable(scope.symbols, *v);
                     Math::Row(vec![variable, Math::Operator(relation), bound])
                 }
             };
-            let right = over_domain(symbols, t.variable(Variable::Multiplier(n)), &m.domain);
+            let right = over_domain(
+                scope.symbols,
+                t.variable(Variable::Multiplier(n)),
+                &m.domain,
+            );
             pairs.push((left, signed(right, m.sign)));
         }
     }
@@ -157,7 +159,7 @@ pub fn short(x: f64) -> String {
 }
 
 /// Complementary slackness in numbers; empty without an answer.
-pub fn slackness(symbols: &Symbols, store: &Store, primal: &Primal, flipped: bool) -> Page {
+pub fn slackness(scope: Scope, primal: &Primal, flipped: bool) -> Page {
     let Some(a) = &primal.answer else {
         return Vec::new();
     };
@@ -165,9 +167,6 @@ pub fn slackness(symbols: &Symbols, store: &Store, primal: &Primal, flipped: boo
     let p = &g.instance;
     let z = p.objective.map(|o| o.column as usize);
     let mut lines = Vec::new();
-    let named = |b: &crate::model::origin::Block, i: u32| {
-        super::text::record(store, &symbols.get(b.symbol).name, b.key(i))
-    };
     let near = |x: f64, size: f64| x.abs() <= 1e-7 * (1.0 + size.abs());
     for b in &g.origin.rows.list {
         for i in b.start..b.start + b.len {
@@ -180,7 +179,12 @@ pub fn slackness(symbols: &Symbols, store: &Store, primal: &Primal, flipped: boo
             let (left, right) = (a.activity[k], p.rows.rhs[k]);
             let y = flip * a.row_marginal[k];
             let slack = (left - right).abs();
-            let mut line = format!("{}: {} {sign} {}", named(b, i), short(left), short(right));
+            let mut line = format!(
+                "{}: {} {sign} {}",
+                scope.called(&g.origin.rows, k),
+                short(left),
+                short(right)
+            );
             line.push_str(&match near(slack, right) {
                 true if near(y, 0.0) => ", tight, and its multiplier is 0".to_string(),
                 true => format!(", tight: its multiplier is {}", short(y)),
@@ -208,7 +212,7 @@ pub fn slackness(symbols: &Symbols, store: &Store, primal: &Primal, flipped: boo
             let at_lower = near(x - lo, x);
             let sign = if at_lower != maximum { "≤" } else { "≥" };
             let bound = if at_lower { lo } else { up };
-            let name = named(b, j);
+            let name = scope.called(&g.origin.columns, j as usize);
             let [x_text, right] = [x, cost[k]].map(short);
             let relation = match () {
                 () if lo == up => "=",

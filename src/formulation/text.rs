@@ -3,7 +3,7 @@
 use super::data::{Data, Statements, head, number, quoted};
 use super::names::Names;
 use super::tree::*;
-use super::{Formulation, NewData, Row, Sign};
+use super::{Formulation, NewData, Row, Scope, Sign};
 use crate::check::functions::{attribute_word, data_word, label_word};
 use crate::check::node::{SymbolId, TableId};
 use crate::check::symbols::{Store, Symbols};
@@ -16,8 +16,7 @@ use std::sync::Arc;
 
 /// Writes expressions as statements of the language.
 pub struct Writer<'a> {
-    symbols: &'a Symbols,
-    store: &'a Store,
+    scope: Scope<'a>,
     f: &'a Formulation,
     /// Names of indices.
     pub names: Names<'a>,
@@ -56,19 +55,18 @@ pub fn attribute_name(symbols: &Symbols, s: SymbolId, offset: u32) -> String {
 
 impl<'a> Writer<'a> {
     /// A writer for the expressions of a formulation.
-    pub fn new(symbols: &'a Symbols, store: &'a Store, f: &'a Formulation, alone: bool) -> Self {
+    pub fn new(scope: Scope<'a>, f: &'a Formulation, alone: bool) -> Self {
         Self {
-            symbols,
-            store,
+            scope,
             f,
-            names: Names::new(symbols, &f.indices, taken(symbols, f)),
+            names: Names::new(scope.symbols, &f.indices, taken(scope.symbols, f)),
             alone,
             driving: Vec::new(),
         }
     }
 
     fn name(&self, s: SymbolId) -> &'a str {
-        &self.symbols.get(s).name
+        &self.scope.get(s).name
     }
 
     /// The set of a membership.
@@ -81,12 +79,12 @@ impl<'a> Writer<'a> {
     }
 
     fn variable(&self, v: Variable) -> String {
-        self.f.variable(self.symbols, v)
+        self.f.variable(self.scope.symbols, v)
     }
     fn part(&mut self, p: &Part) -> String {
         match p {
             Part::Index(k) => self.names.of(*k).to_string(),
-            Part::Label(l) => quoted(self.store.universe.name(*l)),
+            Part::Label(l) => quoted(self.scope.store.universe.name(*l)),
             Part::Singleton(s, _) => self.name(*s).to_string(),
             Part::Lag(l) => {
                 let base = self.part(&l.base);
@@ -122,7 +120,7 @@ impl<'a> Writer<'a> {
         match s {
             Source::Parameter(p) => format!("{}{key}", self.name(p)),
             Source::Attribute(v, offset) if self.alone => {
-                format!("{}{key}", attribute_name(self.symbols, v, offset))
+                format!("{}{key}", attribute_name(self.scope.symbols, v, offset))
             }
             Source::Attribute(v, offset) => {
                 format!("{}.{}{key}", self.name(v), attribute_word(offset))
@@ -338,15 +336,14 @@ pub fn aggregate_word(op: AggregateOp) -> &'static str {
 /// The whole model as text. `include`: the file of the user's text, which is then included instead of its data; `solve`:
 /// what stands behind the model.
 pub fn model(
-    symbols: &Symbols,
-    store: &Store,
+    scope: Scope,
     f: &Formulation,
     include: Option<&str>,
     head: &str,
     solve: bool,
     apart: Option<&mut Vec<Arc<Input>>>,
 ) -> String {
-    let mut w = Writer::new(symbols, store, f, include.is_none());
+    let mut w = Writer::new(scope, f, include.is_none());
     let mut rows = String::new();
     for r in &f.rows {
         let _ = writeln!(rows, "{}", w.row(r));
@@ -355,7 +352,7 @@ pub fn model(
     let mut equations: Vec<String> = f
         .rows
         .iter()
-        .map(|r| declaration(symbols, &r.name, &r.domain, &r.text))
+        .map(|r| declaration(scope.symbols, &r.name, &r.domain, &r.text))
         .collect();
     let mut free: Vec<String> = Vec::new();
     if let Some((_, e)) = &objective {
@@ -373,22 +370,22 @@ pub fn model(
         let (target, word, data) = (&a.target, a.attribute, &a.data.name);
         let _ = writeln!(start, "{target}.{word}{key}${data}{key} = {data}{key};");
     }
-    let mut data_text = Statements::new(symbols, store, apart);
+    let mut data_text = Statements::new(scope, apart);
     data_text.text.push_str(head);
     match include {
         Some(file) => {
             let quote = if file.contains(' ') { "\"" } else { "" };
             let _ = writeln!(data_text.text, "$include {quote}{file}{quote}\n");
         }
-        None => needed(symbols, store, f, &w).statements(&mut data_text),
+        None => needed(scope, f, &w).statements(&mut data_text),
     }
     for (set, name) in &w.names.aliases {
-        let root = &symbols.get(*set).name;
+        let root = &scope.get(*set).name;
         let _ = writeln!(data_text.text, "Alias ({root},{name});");
     }
     introduced(f).for_each(|d| data_text.introduced(d));
     let mut out = data_text.text;
-    let list = |sign: Sign| variables(symbols, f, sign, include.is_none());
+    let list = |sign: Sign| variables(scope.symbols, f, sign, include.is_none());
     free.extend(list(Sign::Free));
     let mut declare = |word: &str, list: Vec<String>| {
         if !list.is_empty() {
@@ -434,17 +431,16 @@ fn introduced(f: &Formulation) -> impl Iterator<Item = &NewData> {
 
 /// The user's data that a formulation reads and that are others elsewhere, by name.
 pub fn changed<'t>(
-    symbols: &Symbols,
-    store: &Store,
+    scope: Scope,
     f: &Formulation,
     other: &dyn Fn(TableId) -> Option<&'t Table>,
 ) -> Vec<String> {
-    needed(symbols, store, f, &Writer::new(symbols, store, f, false)).changed(other)
+    needed(scope, f, &Writer::new(scope, f, false)).changed(other)
 }
 
 /// What a formulation needs of the user's data.
-fn needed<'a>(symbols: &'a Symbols, store: &'a Store, f: &Formulation, w: &Writer) -> Data<'a> {
-    let mut data = Data::new(symbols, store);
+fn needed<'a>(scope: Scope<'a>, f: &Formulation, w: &Writer) -> Data<'a> {
+    let mut data = Data::new(scope);
     for &(set, _) in &w.names.aliases {
         data.set(set);
     }

@@ -30,62 +30,6 @@ fn all(bytes: &[u8]) -> Result<Contents<'_>> {
     })
 }
 
-/// A record: labels and values.
-fn record(file: &File<'_>, symbol: &str, r: usize) -> (String, Vec<Value>) {
-    let n = file.find(symbol).expect("a symbol");
-    let (s, records) = (&file.symbols[n], file.records(n).expect("records"));
-    let (dim, width) = (s.domain.len(), s.kind.width());
-    let keys = &records.keys[r * dim..(r + 1) * dim];
-    let labels: Vec<&str> = keys.iter().map(|&k| &*file.labels[k as usize]).collect();
-    let values = records.values[r * width..(r + 1) * width].to_vec();
-    (labels.join("."), values)
-}
-
-#[test]
-fn reads_what_gams_wrote() {
-    use Value::{Acronym, Eps, NotAvailable, Number};
-    let inf = f64::INFINITY;
-    for bytes in [PLAIN, PACKED] {
-        let file = File::open(bytes).expect("a file of GAMS");
-        assert_eq!((file.version, file.symbols.len()), (7, 31));
-        assert_eq!(file.labels.len(), 9);
-        let set = |name: &str| file.records(file.find(name).expect("a set")).expect("read");
-        let i = set("I");
-        let texts: Vec<&str> = i.texts.iter().map(|&t| &*file.texts[t as usize]).collect();
-        assert_eq!(texts, ["text a", "", "text c"]);
-        assert_eq!(set("ii"), i);
-        assert_eq!(set("uni").len, 9);
-        assert_eq!(file.symbols[4].kind, Kind::Set { singleton: true });
-        assert_eq!(record(&file, "ij", 1).0, "b.u3");
-        assert_eq!(file.symbols[6].domain, [Domain::Set(0), Domain::Set(3)]);
-        assert_eq!(record(&file, "z", 0).1, [Number(0.0)]);
-        assert_eq!(record(&file, "sc", 0).1, [Number(3.5)]);
-        assert_eq!(record(&file, "na1", 0).1, [NotAvailable]);
-        assert_eq!(record(&file, "p", 1), ("b".into(), vec![Eps]));
-        assert_eq!(record(&file, "p", 2), ("c".into(), vec![Number(inf)]));
-        let q = record(&file, "q", 2);
-        assert_eq!(q, ("c.u3.a".into(), vec![Number(-inf)]));
-        assert_eq!(record(&file, "r", 1), ("b".into(), vec![Acronym(1)]));
-        assert_eq!(file.acronyms().collect::<Vec<_>>(), ["red", "blue"]);
-        let values = [2.0, 0.25, -inf, 7.0, 1.0].map(Number).to_vec();
-        assert_eq!(record(&file, "x", 1), ("b".into(), values));
-        let kind = |name: &str| file.symbols[file.find(name).expect("a symbol")].kind;
-        let types = ["bb", "ii2", "v", "ng", "x", "so", "s2", "sc2", "si2"].map(kind);
-        assert_eq!(types, [1, 2, 3, 4, 5, 6, 7, 8, 9].map(Kind::Variable));
-        assert_eq!(
-            ["h", "f", "g", "nn"].map(kind),
-            [53, 54, 55, 56].map(Kind::Equation)
-        );
-        assert_eq!(record(&file, "lng", 1).0, "quote's");
-    }
-    assert_eq!(
-        format!("{:?}", all(PLAIN).expect("read")),
-        format!("{:?}", all(PACKED).expect("read"))
-    );
-    let file = File::open(RELAXED).expect("a file of GAMS");
-    assert_eq!(file.symbols[0].domain, [Domain::Relaxed("i".into())]);
-}
-
 #[test]
 fn what_is_written_is_read() {
     for bytes in [PLAIN, RELAXED] {

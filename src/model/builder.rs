@@ -78,19 +78,11 @@ impl Term {
                 self.constants.push(whole.constants[k as usize]);
                 Op::Const(c)
             }
-            Op::Affine {
-                constant,
-                variable,
-                terms,
-            } => {
+            Op::Affine(constant, variable, terms) => {
                 let (first, x, n) = (constant as usize, variable as usize, terms as usize);
                 self.constants.extend(&whole.constants[first..=first + n]);
                 self.columns.extend(&whole.columns[x..x + n]);
-                Op::Affine {
-                    constant: c,
-                    variable: v,
-                    terms,
-                }
+                Op::Affine(c, v, terms)
             }
             op => op,
         });

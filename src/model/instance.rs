@@ -206,15 +206,8 @@ pub enum Op {
     Var(u32),
     /// Pushes the constant in slot k.
     Const(u32),
-    /// Pushes `const[k] + sum_{m<n} const[k+1+m]·var[v+m]`: an affine form.
-    Affine {
-        /// First constant slot (the constant term; coefficients follow).
-        constant: u32,
-        /// First variable slot.
-        variable: u32,
-        /// Number of terms.
-        terms: u32,
-    },
+    /// Pushes `const[k] + sum_{m<n} const[k+1+m]·var[v+m]`, an affine form: k, v and n.
+    Affine(u32, u32, u32),
     /// Pops b, a; pushes a + b.
     Add,
     /// Pops n values; pushes their sum.
@@ -241,7 +234,7 @@ impl Op {
     /// How many values it pops.
     pub fn arguments(self) -> usize {
         match self {
-            Self::Var(_) | Self::Const(_) | Self::Affine { .. } => 0,
+            Self::Var(_) | Self::Const(_) | Self::Affine(..) => 0,
             Self::Negate | Self::PowerInt(_) => 1,
             Self::Add | Self::Subtract | Self::Multiply | Self::Divide | Self::Power => 2,
             Self::AddN(n) | Self::MultiplyN(n) | Self::Call(_, n) => n as usize,
@@ -253,15 +246,9 @@ impl Op {
         match self {
             Self::Var(k) => Self::Var(k + variables),
             Self::Const(k) => Self::Const(k + constants),
-            Self::Affine {
-                constant,
-                variable,
-                terms,
-            } => Self::Affine {
-                constant: constant + constants,
-                variable: variable + variables,
-                terms,
-            },
+            Self::Affine(constant, variable, terms) => {
+                Self::Affine(constant + constants, variable + variables, terms)
+            }
             op => op,
         }
     }

@@ -391,48 +391,6 @@ mod tests {
     }
 
     #[test]
-    fn shows_both_places() {
-        let text = "set i / a, b /;\nparameter p(i);\n\n\n\n\n\nscalar s;\ns = p('a','b');\n";
-        let (map, _) = map("wall.blk", text);
-        let d = Diagnostic::error("E0301", at(&map, "p('a','b')"))
-            .says("`p` takes 1 index, not 2")
-            .label("2 indices here")
-            .other(at(&map, "p(i)"), "declared here with 1 index")
-            .help("write p('a')");
-        insta::assert_snapshot!(render(std::slice::from_ref(&d), &map, Look::plain()), @r#"
-E0301
-
-  x `p` takes 1 index, not 2
-   ,-[wall.blk:9:5]
- 8 | scalar s;
- 9 | s = p('a','b');
-   :     ^^^^^|^^^^
-   :          `-- 2 indices here
-   `----
-   ,-[wall.blk:2:11]
- 1 | set i / a, b /;
- 2 | parameter p(i);
-   :           ^^|^
-   :             `-- declared here with 1 index
- 3 | 
-   `----
-  help: write p('a')
-"#);
-        let unicode = Look {
-            unicode: true,
-            ..Look::plain()
-        };
-        assert!(render(std::slice::from_ref(&d), &map, unicode).contains('╭'));
-        let json: serde_json::Value =
-            serde_json::from_str(&json_lines(&[d], &map)).expect("one JSON object");
-        assert_eq!(json["line"], 9);
-        assert_eq!(json["column"], 5);
-        assert_eq!(json["end_column"], 15);
-        assert_eq!(json["labels"][0]["line"], 2);
-        assert_eq!(json["severity"], "error");
-    }
-
-    #[test]
     fn other_files_are_shown_as_well() {
         let mut map = SourceMap::default();
         let a = map.add_file("main.blk", "x = 1;\n".into());

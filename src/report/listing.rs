@@ -281,11 +281,7 @@ fn algebra(terms: &KernelTerms, t: usize, names: &dyn Names) -> String {
                 let value = constant(k);
                 (digits(value), if value < 0.0 { 1 } else { 4 })
             }
-            Op::Affine {
-                constant: first,
-                variable: x,
-                terms,
-            } => {
+            Op::Affine(first, x, terms) => {
                 let mut text = String::new();
                 for m in 0..terms {
                     let piece = term(constant(first + 1 + m), &variable(x + m), text.is_empty());

@@ -1,12 +1,9 @@
 //! A work–precision study as a table, as CSV, and as a picture with two logarithmic axes.
 
-mod chart;
-
-pub use chart::svg;
-
 use std::fmt::Write;
 
-use crate::solve::study::{Reference, Study};
+use super::figure::{self, Anchor, Element, Scene, Shape, Style};
+use crate::solve::study::{Reference, Run, Study};
 
 fn small(v: Option<f64>) -> String {
     match v {
@@ -88,6 +85,59 @@ pub fn csv(s: &Study) -> String {
         ]
     }));
     comma_separated(&lines)
+}
+
+/// Error over time, both logarithmic: a line for each solver, the settings at its points. Errors that are exactly 0 stand a decade
+/// below the others. Times differ from run to run, and so does the picture.
+pub fn svg(title: &str, s: &Study) -> String {
+    let error = |r: &Run| r.error.filter(|e| e.is_finite());
+    let drawn: Vec<&Run> = s.runs.iter().filter(|r| error(r).is_some()).collect();
+    let errors = drawn.iter().filter_map(|r| error(r)).filter(|&e| e > 0.0);
+    let zero = errors.fold(1.0, f64::min) / 10.0;
+    let at = |r: &Run| {
+        let error = r.error.filter(|&e| e > 0.0);
+        [r.seconds.max(1e-9), error.unwrap_or(zero)]
+    };
+    let mut scene = Scene {
+        title: Some(title.into()),
+        x_label: Some("seconds".into()),
+        y_label: Some("error".into()),
+        x_log: true,
+        y_log: true,
+        ..Scene::default()
+    };
+    if drawn.iter().any(|r| r.error == Some(0.0)) {
+        scene.subtitle = Some(format!("errors of 0 stand at {zero:.0e}"));
+    }
+    for runs in drawn.chunk_by(|a, b| a.way.family == b.way.family) {
+        let points: Vec<[f64; 2]> = runs.iter().map(|r| at(r)).collect();
+        for shape in [Shape::Line(points.clone()), Shape::Points(points)] {
+            let element = Element::new(shape).name(runs[0].way.family);
+            scene.elements.push(element);
+        }
+        // Points that lie on each other share a label.
+        let near = |a: f64, b: f64| (a / b).ln().abs() < 0.05;
+        let mut left = runs.to_vec();
+        while let Some([x, y]) = left.first().map(|r| at(r)) {
+            let here = |r: &&Run| near(at(r)[0], x) && near(at(r)[1], y);
+            let names: Vec<&str> = left
+                .iter()
+                .copied()
+                .filter(here)
+                .map(|r| &*r.way.setting)
+                .collect();
+            let label = Shape::Text(
+                [x, y],
+                format!("\u{a0}\u{a0}{}", names.join(", ")),
+                Anchor::Start,
+            );
+            scene
+                .elements
+                .push(Element::new(label).style(Style::sized(10.0)));
+            left.retain(|r| !here(r));
+        }
+    }
+    figure::svg(&scene)
 }
 
 /// Lines of cells as comma-separated values.

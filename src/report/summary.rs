@@ -182,58 +182,7 @@ fn time(seconds: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::json::{Residual, Seconds};
     use super::*;
-    use crate::model::instance::Sense;
-    use crate::model::outcome::{ModelStatus, SolverStatus};
-    use crate::model::problem_type::ProblemType;
-
-    fn report() -> SolveReport {
-        SolveReport {
-            sense: Some(Sense::Maximize),
-            objective_name: Some("alpha".into()),
-            solver: "clarabel".into(),
-            model_status: ModelStatus::Optimal.into(),
-            objective: Some(Number(0.642_859_003_3)),
-            rows: 431,
-            columns: 250,
-            nonzeros: 15_002,
-            iterations: 14,
-            seconds: Seconds {
-                generate: 0.001,
-                solve: 0.004,
-                total: 0.0062,
-            },
-            residual: Residual {
-                primal: Some(1.4e-12),
-                dual: Some(0.0),
-                complementarity: Some(2e-14),
-                natural: None,
-            },
-            ..SolveReport::new("static", ProblemType::Lp)
-        }
-    }
-
-    #[test]
-    fn reads_well() {
-        insta::assert_snapshot!(solve(&report(), false), @r"
-          static using lp maximizing alpha: optimal, alpha = 0.6428590033
-            431 rows, 250 columns, 15 002 nonzeros · clarabel, 14 iterations, 6.2 ms
-            largest residuals: primal 1e-12, dual 0, complementarity 2e-14
-        ");
-        let mut r = report();
-        r.model_status = ModelStatus::Infeasible.into();
-        r.solver_status = SolverStatus::ResourceInterrupt.into();
-        r.objective = None;
-        r.seconds.total = 12.345;
-        insta::assert_snapshot!(solve(&r, false), @r"
-          static using lp maximizing alpha: infeasible
-            solver: resource interrupt
-            431 rows, 250 columns, 15 002 nonzeros · clarabel, 14 iterations, 12.35 s
-            largest residuals: primal 1e-12, dual 0, complementarity 2e-14
-        ");
-        assert!(solve(&r, true).contains(YELLOW));
-    }
 
     #[test]
     fn digits_are_ten() {

@@ -49,7 +49,7 @@ impl Term {
                 (Op::Const(k), _) => Part::Number(self.constants[k as usize]),
                 (Op::Multiply | Op::MultiplyN(_), _) if args.iter().any(zero) => Part::Number(0.0),
                 (Op::Divide, None) if zero(&args[0]) => Part::Number(0.0),
-                (Op::Var(_) | Op::Affine { .. }, _) => {
+                (Op::Var(_) | Op::Affine(..), _) => {
                     let mut code = Self::default();
                     code.copy(self, op);
                     Part::Code(code)
@@ -154,14 +154,7 @@ pub(super) fn affine(ops: &[Op], constants: &[f64]) -> Result<Option<Affine>, Do
                 constant: 0.0,
                 terms: vec![(v, 1.0)],
             }),
-            (
-                Op::Affine {
-                    constant,
-                    variable,
-                    terms,
-                },
-                _,
-            ) => Some(Affine {
+            (Op::Affine(constant, variable, terms), _) => Some(Affine {
                 constant: constants[constant as usize],
                 terms: (0..terms)
                     .map(|t| (variable + t, constants[(constant + 1 + t) as usize]))

@@ -136,25 +136,3 @@ impl Machine<'_> {
         Some(taken)
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn lines_are_names_and_values() {
-        let text = "* how\ntol 1e-9\n\nmax_iter = 50 # few\nmu_strategy=\"adaptive\"\n";
-        let want = [
-            (2, "tol", "1e-9"),
-            (4, "max_iter", "50"),
-            (5, "mu_strategy", "adaptive"),
-        ];
-        let want = want.map(|(n, a, b)| (n, a.to_string(), b.to_string()));
-        assert_eq!(parse(text), Ok(want.to_vec()));
-        assert_eq!(parse("tol\n"), Err("tol".into()));
-        assert_eq!(
-            [1, 2, 9, 10, 123].map(extension),
-            ["opt", "op2", "op9", "o10", "123"]
-        );
-    }
-}

@@ -159,35 +159,3 @@ pub(crate) fn constant(name: &str) -> Option<&'static str> {
     let i = list.iter().position(|&m| m == member)?;
     NUMBERS.get(i + first).copied()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_innermost_scope_wins() {
-        let mut v = Variables::default();
-        v.enter();
-        v.set(Reach::Global, "A", "1".into());
-        v.set(Reach::Scoped, "a", "2".into());
-        v.enter();
-        assert_eq!(v.get("a"), Some("2"));
-        v.set(Reach::Local, "a", "3".into());
-        assert_eq!(v.get("A"), Some("3"));
-        v.leave();
-        assert_eq!(v.get("a"), Some("2"));
-        v.drop(Reach::Scoped, "a");
-        assert_eq!(v.get("a"), Some("1"));
-    }
-
-    #[test]
-    fn statuses_have_their_numbers() {
-        assert_eq!(constant("modelStat.Optimal"), Some("1"));
-        assert_eq!(constant("solveStat.normalCompletion"), Some("1"));
-        assert_eq!(constant("solveLink.loadLibrary"), Some("5"));
-        assert_eq!(constant("solPrint.quiet"), Some("2"));
-        assert_eq!(constant("modelStat.Infeasible-No_Solution"), Some("19"));
-        assert_eq!(constant("solveStat.SystemFailure"), Some("13"));
-        assert_eq!(constant("modelStat.nonsense"), None);
-    }
-}

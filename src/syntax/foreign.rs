@@ -2,7 +2,7 @@
 //!
 //! Only statements that did not parse come here, so nothing legal is refused.
 
-use super::explain::{Explanation, Failure, GoOn};
+use super::explain::{Explanation, Failure, GoOn, closing};
 use super::words::{self, Class};
 use crate::diag::{Diagnostic, nearest};
 use crate::source::Span;
@@ -418,17 +418,9 @@ fn text_goes_on(f: &Failure<'_>, lead: usize) -> bool {
 
 /// `(a < 3) { …`
 fn body_in_braces(rest: &str) -> bool {
-    let mut depth = 0usize;
-    for (k, c) in rest.char_indices() {
-        match c {
-            '(' => depth += 1,
-            ')' if depth == 1 => return rest[k + 1..].trim_start().starts_with('{'),
-            ')' => depth = depth.saturating_sub(1),
-            _ if depth == 0 => return false,
-            _ => {}
-        }
-    }
-    false
+    let end = rest.starts_with('(').then(|| closing(rest.as_bytes(), 0));
+    end.flatten()
+        .is_some_and(|k| rest[k + 1..].trim_start().starts_with('{'))
 }
 
 /// A word that only another language has.

@@ -19,7 +19,7 @@ mod foreign;
 mod grammar;
 mod neighbours;
 mod slips;
-mod split;
+pub(crate) mod split;
 pub mod table;
 pub(crate) mod words;
 

@@ -24,7 +24,7 @@ pub(super) const DEEPEST: usize = 250;
 
 /// What the splitter takes out of a declaration.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) enum HoleKind {
+pub(crate) enum HoleKind {
     /// An explanatory text.
     Text,
     /// Data between slashes, a table's lines, a file's name.
@@ -33,22 +33,22 @@ pub(super) enum HoleKind {
 
 /// A part of a statement that the grammar does not read.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Hole {
-    pub(super) kind: HoleKind,
+pub(crate) struct Hole {
+    pub(crate) kind: HoleKind,
     /// What counts: the text without its quotes, the body without its slashes.
-    pub(super) inside: Span,
+    pub(crate) inside: Span,
     /// All that is taken out.
-    pub(super) outside: Span,
+    pub(crate) outside: Span,
 }
 
 /// A statement as it was cut out.
 #[derive(Debug)]
-pub(super) struct Raw {
-    pub(super) class: Class,
-    pub(super) span: Span,
-    pub(super) holes: Vec<Hole>,
+pub(crate) struct Raw {
+    pub(crate) class: Class,
+    pub(crate) span: Span,
+    pub(crate) holes: Vec<Hole>,
     /// What is wrong already; then there is no use in parsing.
-    pub(super) problems: Vec<Diagnostic>,
+    pub(crate) problems: Vec<Diagnostic>,
 }
 
 /// What the splitter says.
@@ -119,6 +119,16 @@ pub(super) struct Splitter {
     names: usize,
     /// Data up to here hold no `;` that could end the statement.
     searched: usize,
+}
+
+/// The declaration that begins at a byte of a whole text, and where to read on.
+pub(crate) fn declaration(text: &str, at: usize) -> (Option<Raw>, usize) {
+    let mut splitter = Splitter::default();
+    splitter.back_to(at);
+    match splitter.next(text, false, true) {
+        Cut::Statement(raw) => (Some(raw), splitter.pos),
+        Cut::More => (None, text.len()),
+    }
 }
 
 fn span(lo: usize, hi: usize) -> Span {

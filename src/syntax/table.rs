@@ -485,70 +485,6 @@ fn column_after(text: &str, column: usize) -> usize {
 mod tests {
     use super::*;
 
-    fn cells(text: &str) -> Vec<String> {
-        fn key(k: &[KeyPart<'_>]) -> String {
-            k.iter()
-                .map(|p| match p {
-                    KeyPart::Label { text, .. } => (*text).to_owned(),
-                    KeyPart::Range { from, to, .. } => format!("{from}*{to}"),
-                    KeyPart::AllOf { set, .. } => format!("#{set}"),
-                    KeyPart::Universe(_) => "*".into(),
-                    KeyPart::Factor(x) => x.to_string(),
-                    KeyPart::Matched(a, b) => format!("{}:{}", key(a), key(b)),
-                    KeyPart::Group(g) => format!(
-                        "({})",
-                        g.iter().map(|k| key(k)).collect::<Vec<_>>().join(",")
-                    ),
-                })
-                .collect::<Vec<_>>()
-                .join(".")
-        }
-        let mut t = TableReader::new(text, Span::new(0, text.len() as u32), 2, false);
-        let mut out = Vec::new();
-        while let Some(c) = t.next() {
-            out.push(match c {
-                Ok(TableItem::Headings) => continue,
-                Ok(TableItem::EmptyRow(r, _)) => format!("{}|", key(r)),
-                Ok(TableItem::Cell(c)) => {
-                    let v = match c.value {
-                        Tail::Number(x, _) => x.to_string(),
-                        Tail::Name(n, _) => n.to_owned(),
-                        other => format!("{other:?}"),
-                    };
-                    format!("{}|{}={v}", key(c.row), key(c.column))
-                }
-                Err(d) => format!("!{}", d.code),
-            });
-        }
-        out
-    }
-
-    #[test]
-    fn continuation_and_tuples() {
-        let t = "       aa.x    bb . y\nr1      1         2\n+      cc.(x,y)\nr1      - 1\n  +\n      c1*c3\n(r,s).k  7";
-        assert_eq!(
-            cells(t),
-            ["r1|aa.x=1", "r1|bb.y=2", "r1|cc.(x,y)=-1", "!E0252"]
-        );
-    }
-
-    #[test]
-    fn misplaced_values() {
-        assert_eq!(
-            cells("\n       aa      bb\nr1    1\nr2         2\n"),
-            ["!E0250", "r1|", "!E0250", "r2|"]
-        );
-        assert_eq!(
-            cells("\n       aa      bb\nr1 1234567890123\nr2 x   3 "),
-            ["!E0251", "r1|", "!E0250", "r2|aa=3"]
-        );
-        assert_eq!(
-            cells("\n     x     y\nb  1234     1\nc  7        .5\nd         2\n"),
-            ["b|x=1234", "!E0250", "c|x=7", "!E0250", "!E0250", "d|"]
-        );
-        assert_eq!(cells("\n       aa\nr1 5x   3 "), ["!E0245", "r1|aa=3"]);
-    }
-
     /// Rows as text, with places; `plainly`: those that can be read by [`TableReader::plain_row`] are.
     fn rows(text: &str, dim: usize, plainly: bool) -> Vec<String> {
         let mut t = TableReader::new(text, Span::new(0, text.len() as u32), dim, false);
@@ -613,17 +549,5 @@ mod tests {
             let text = headings.to_owned() + &rest.concat();
             proptest::prop_assert_eq!(rows(&text, dim, true), rows(&text, dim, false));
         }
-    }
-
-    #[test]
-    fn tabs_and_wide_characters() {
-        assert_eq!(
-            cells("\n\ta\tb\tc\nr1\t1\t2\t3\nr2\t\t2\n"),
-            ["r1|a=1", "r1|b=2", "r1|c=3", "r2|b=2"]
-        );
-        assert_eq!(
-            cells("\n       ä  b\nzürich 1  2\n"),
-            ["zürich|ä=1", "zürich|b=2"]
-        );
     }
 }

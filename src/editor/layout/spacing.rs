@@ -108,9 +108,10 @@ impl Layout<'_> {
                     | R::Label
             )
         };
-        // What a substitution leaves is not known.
+        // What a substitution leaves is not known; a text that touches the word before it may be a slip.
         let percent = |t: &Token| t.role == R::Operator && &self.text[t.lo..t.hi] == "%";
-        if percent(x) || percent(y) {
+        let slip = y.role == R::Text && !matches!(x.role, R::Slash | R::Comma);
+        if percent(x) || percent(y) || slip {
             return was;
         }
         if y.role == R::Comment {

@@ -45,7 +45,7 @@ impl Scanner<'_> {
         }
     }
 
-    pub(super) fn code(&mut self, i: usize, hi: usize) -> usize {
+    pub(super) fn code(&mut self, i: usize) -> usize {
         let bytes = self.code.as_bytes();
         let b = bytes[i];
         let blocky = self.frames.last().is_some_and(|f| f.block && !f.header);
@@ -62,7 +62,7 @@ impl Scanner<'_> {
             }
         }
         if words::is_letter(b) {
-            return self.code_word(i, hi);
+            return self.code_word(i);
         }
         let end = match b {
             b'\'' | b'"' => match memchr::memchr2(b, b'\n', &bytes[i + 1..]) {
@@ -72,7 +72,7 @@ impl Scanner<'_> {
                 }
                 _ => {
                     // Half-typed: to the end of the line.
-                    let end = i + self.code[i..hi].trim_end().len();
+                    let end = i + self.code[i..self.line_end(i)].trim_end().len();
                     self.push(i, end, Role::Quoted);
                     end
                 }
@@ -197,7 +197,7 @@ impl Scanner<'_> {
         })
     }
 
-    pub(super) fn code_word(&mut self, i: usize, _hi: usize) -> usize {
+    pub(super) fn code_word(&mut self, i: usize) -> usize {
         let bytes = self.code.as_bytes();
         let end = words::word_end(bytes, i);
         let after_dot = self
@@ -236,7 +236,7 @@ impl Scanner<'_> {
             && (statement.is_some() || words::classify(self.code, i).0 == Class::Other);
         let keyword = statement.is_some() || inner || begins;
         if keyword {
-            self.block_word(&lower, end, i);
+            self.block_word(&lower);
         }
         let key = self.word == "figure" || self.in_figure();
         let behind = self.code[end..].trim_start();
@@ -260,7 +260,7 @@ impl Scanner<'_> {
     }
 
     /// Before `else`, `until`, `endloop`: what is inside ends.
-    pub(super) fn block_word(&mut self, word: &str, _end: usize, _i: usize) {
+    pub(super) fn block_word(&mut self, word: &str) {
         match word {
             "else" | "elseif" => {
                 self.end_inner();

@@ -1,328 +1,245 @@
-//! Declarations: names, domains, texts, data between slashes, lists of models, the lines of tables.
+//! Declarations, as the parser cuts them: names, domains, texts, data between slashes, lists of models, the lines of tables.
 
-use super::{Class, Phase, Role, Scanner, quoted_end, words};
+use super::{Class, LineKind, Role, Scanner, quoted_end, words};
+use crate::source::Span;
+use crate::syntax::split::{self, HoleKind};
 
 /// What separates; other blanks of Unicode are part of a text.
 const BLANKS: [char; 3] = [' ', '\t', '\r'];
 
 impl Scanner<'_> {
-    pub(super) fn declaration(&mut self, i: usize, hi: usize) -> usize {
+    /// The declaration that begins at `i`, the words of its kind before `names`; where to read on.
+    pub(super) fn declaration(&mut self, class: Class, i: usize, names: usize) -> usize {
         let bytes = self.code.as_bytes();
-        let b = bytes[i];
-        if self.new_line && matches!(self.phase, Phase::AfterName) {
-            self.phase = Phase::AfterText;
+        // `positive variables`: each word by itself; they may stand on two lines.
+        let mut at = i;
+        while at < names {
+            let to = words::word_end(bytes, at);
+            match to == at {
+                true => at += 1,
+                false => drop(self.push(at, to, Role::Keyword)),
+            }
+            at = at.max(to);
         }
-        if self.phase == Phase::Domain {
-            return self.domain(i);
+        let (Some(raw), mut next) = split::declaration(self.code, i) else {
+            return self.code.len();
+        };
+        let mut end = (raw.span.hi as usize).min(next);
+        let mut holes = raw.holes.iter().peekable();
+        let (mut domain, mut list, mut closed) = (false, false, true);
+        while at < end {
+            let b = bytes[at];
+            if words::is_blank(b) {
+                at += 1;
+                continue;
+            }
+            if let Some(h) = holes.next_if(|h| h.outside.lo as usize <= at) {
+                at = h.outside.hi as usize;
+                match h.kind {
+                    HoleKind::Text => self.explanation(h.outside),
+                    HoleKind::Body if h.inside == h.outside => {
+                        let rows = self.code[h.inside.lo as usize..at].trim_start();
+                        let first = at - rows.len();
+                        // What follows a directive is no row.
+                        let lines = &self.scan.lines;
+                        let directive = (lines.line_of(first)..=lines.line_of(at))
+                            .find(|&l| lines.kinds[l] == LineKind::Directive);
+                        if let Some(line) = directive {
+                            at = lines.starts[line];
+                            (end, next) = (at, at);
+                        }
+                        self.table(first, at);
+                    }
+                    HoleKind::Body => {
+                        self.push(h.outside.lo as usize, h.inside.lo as usize, Role::Slash);
+                        self.body(class, h.inside.lo as usize, h.inside.hi as usize);
+                        self.push(h.inside.hi as usize, at, Role::Slash);
+                    }
+                }
+                continue;
+            }
+            at = match b {
+                b'/' if class == Class::Model => {
+                    list = !list;
+                    self.sign(at, Role::Slash)
+                }
+                // Never closed.
+                b'/' if class != Class::Acronym => {
+                    closed = false;
+                    self.sign(at, Role::Slash);
+                    self.body(class, at + 1, end);
+                    end
+                }
+                b',' => self.sign(at, Role::Comma),
+                b'(' | b'[' | b'{' => {
+                    domain = true;
+                    self.sign(at, Role::Open)
+                }
+                b')' | b']' | b'}' => {
+                    domain = false;
+                    self.sign(at, Role::Close)
+                }
+                _ if list
+                    && self.code[at..words::word_end(bytes, at)].eq_ignore_ascii_case("all") =>
+                {
+                    self.plain(at, Role::Keyword)
+                }
+                _ if domain || list => self.plain(at, Role::Name),
+                _ if words::is_letter(b) || self.begins_with_percent(at) => {
+                    self.plain(at, Role::Declared)
+                }
+                b'\'' | b'"' => self.plain(at, Role::Name),
+                _ => self.sign(at, Role::Operator),
+            };
         }
-        match b {
-            b';' => {
-                self.push(i, i + 1, Role::Semicolon);
-                self.end(true);
-                i + 1
+        let semicolon = self.code.get(end..next).and_then(|t| t.find(';'));
+        if let Some(n) = semicolon {
+            self.table = class == Class::Table && self.scan.tokens.last().is_some_and(|t| t.table);
+            self.sign(end + n, Role::Semicolon);
+            self.table = false;
+        }
+        let missing = raw.problems.iter().any(|p| p.code == "E0201");
+        let last = next >= self.code.len() && semicolon.is_none();
+        self.end(closed && !domain && !missing && !last);
+        next.max(end)
+    }
+
+    fn sign(&mut self, i: usize, role: Role) -> usize {
+        let end = i + self.code[i..].chars().next().map_or(1, char::len_utf8);
+        self.push(i, end, role);
+        end
+    }
+
+    /// An explanatory text, in quotes or without.
+    fn explanation(&mut self, at: Span) {
+        let (mut lo, hi) = (at.lo as usize, at.hi as usize);
+        if quoted_end(self.code.as_bytes(), lo) == Some(hi) {
+            self.push(lo, hi, Role::Quoted);
+            return;
+        }
+        while lo < hi {
+            let end = hi.min(self.line_end(lo));
+            let text = self.code[lo..end].trim_matches(BLANKS);
+            lo += self.code[lo..end].len() - self.code[lo..end].trim_start_matches(BLANKS).len();
+            if !text.is_empty() {
+                self.push(lo, lo + text.len(), Role::Text);
             }
-            b',' => {
-                self.push(i, i + 1, Role::Comma);
-                self.phase = Phase::Name;
-                i + 1
+            lo = end + usize::from(end < hi);
+        }
+    }
+
+    /// Data between slashes.
+    fn body(&mut self, class: Class, lo: usize, hi: usize) {
+        let bytes = self.code.as_bytes();
+        let (mut at, mut depth, mut record) = (lo, 0usize, true);
+        self.data = true;
+        while at < hi {
+            let b = bytes[at];
+            if words::is_blank(b) {
+                record |= b == b'\n';
+                at += 1;
+                continue;
             }
-            b'/' if self.class != Class::Acronym => {
-                self.push(i, i + 1, Role::Slash);
-                self.phase = Phase::Body;
-                self.record = true;
-                self.depth = 0;
-                i + 1
-            }
-            b'(' | b'[' | b'{' if self.phase != Phase::Name => {
-                self.push(i, i + 1, Role::Open);
-                self.phase = Phase::Domain;
-                i + 1
-            }
-            b'\'' | b'"' => match memchr::memchr2(b, b'\n', &bytes[i + 1..]) {
-                Some(n) if bytes[i + 1 + n] == b => {
-                    let end = i + n + 2;
-                    self.push(i, end, Role::Quoted);
-                    self.phase = Phase::AfterText;
+            let line = hi.min(self.line_end(at));
+            at = match b {
+                b',' => {
+                    record |= depth == 0;
+                    self.sign(at, Role::Comma)
+                }
+                b'(' => {
+                    depth += 1;
+                    self.sign(at, Role::Open)
+                }
+                b')' => {
+                    depth = depth.saturating_sub(1);
+                    self.sign(at, Role::Close)
+                }
+                b'.' if record => self.sign(at, Role::Dot),
+                b'*' | b':' | b'=' | b'/' => self.sign(at, Role::Operator),
+                b'[' | b'{' if class != Class::Set => {
+                    let close = memchr::memchr2(b']', b'}', &bytes[at..line]);
+                    let end = close.map_or(line, |n| at + n + 1);
+                    self.push(at, end, Role::Number);
                     end
                 }
                 _ => {
-                    self.push(i, hi, Role::Text);
-                    hi
+                    let (role, end) = self.datum(class, at, line, record);
+                    self.push(at, end, role);
+                    // A label goes on: `a.b`, `a*b`, `a:b`.
+                    let rest = self.code[end..].trim_start_matches([' ', '\t']);
+                    let quoted = role == Role::Quoted;
+                    record = record && (depth > 0 && !quoted || rest.starts_with(['.', '*', ':']));
+                    end
                 }
-            },
-            _ if self.phase == Phase::AfterName
-                && !matches!(b, b'=' | b'$' | b':' | b'.' | b'<') =>
-            {
-                let data = if self.class == Class::Table {
-                    b','
-                } else {
-                    b'/'
-                };
-                let end = memchr::memchr3(b',', data, b';', &bytes[i..hi]).map_or(hi, |n| i + n);
-                let end = i + self.code[i..end].trim_end_matches(BLANKS).len();
-                self.push(i, end.max(i + 1), Role::Text);
-                self.phase = Phase::AfterText;
-                end.max(i + 1)
-            }
-            _ if words::is_letter(b) || self.begins_with_percent(i) => {
-                let end = self.wordlike(i);
-                if words::statement_word(self.code, i, end).is_some() {
-                    self.end(true);
-                    return i;
-                }
-                // `e..` or `x = 5` where a `;` is missing: the next statement.
-                let rest = self.code[end..hi].trim_start();
-                if self.new_line
-                    && self.names > 0
-                    && (rest.starts_with("..") || rest.starts_with('='))
-                {
-                    self.end(false);
-                    return i;
-                }
-                let role = match self.class {
-                    Class::Alias => Role::Name,
-                    _ => Role::Declared,
-                };
-                self.push(i, end, role);
-                self.names += 1;
-                self.phase = Phase::AfterName;
-                end
-            }
-            _ => {
-                let end = i + self.code[i..].chars().next().map_or(1, char::len_utf8);
-                let role = match b {
-                    b')' | b']' | b'}' => Role::Close,
-                    _ => Role::Operator,
-                };
-                self.push(i, end, role);
-                end
-            }
+            };
         }
+        self.data = false;
     }
 
-    pub(super) fn domain(&mut self, i: usize) -> usize {
-        let bytes = self.code.as_bytes();
-        match bytes[i] {
-            b')' | b']' | b'}' => {
-                self.push(i, i + 1, Role::Close);
-                self.phase = Phase::AfterName;
-                i + 1
-            }
-            b',' => {
-                self.push(i, i + 1, Role::Comma);
-                i + 1
-            }
-            b';' => {
-                self.push(i, i + 1, Role::Semicolon);
-                self.end(false);
-                i + 1
-            }
-            _ => self.plain(i, Role::Name),
-        }
-    }
-
-    /// Inside `/ … /`.
-    pub(super) fn body(&mut self, i: usize, hi: usize) -> usize {
-        let bytes = self.code.as_bytes();
-        let b = bytes[i];
-        let set = self.class == Class::Set;
-        if self.class == Class::Model {
-            return self.model_list(i);
-        }
-        match b {
-            b'/' => {
-                let na = i > 0
-                    && bytes[i - 1].eq_ignore_ascii_case(&b'n')
-                    && bytes
-                        .get(i + 1)
-                        .is_some_and(|b| b.eq_ignore_ascii_case(&b'a'));
-                let role = if na { Role::Operator } else { Role::Slash };
-                let n = self.push(i, i + 1, role);
-                if !na {
-                    self.scan.tokens[n].data = false;
-                    self.phase = Phase::AfterText;
-                }
-                i + 1
-            }
-            b';' if !set
-                || self.code[i + 1..].trim_start().get(..3).is_none_or(|_| {
-                    let rest = self.code[i + 1..].trim_start();
-                    let at = self.code.len() - rest.len();
-                    words::statement_word(self.code, at, words::word_end(bytes, at)).is_some()
-                }) =>
-            {
-                // The slash was forgotten.
-                self.push(i, i + 1, Role::Semicolon);
-                self.end(false);
-                i + 1
-            }
-            b',' => {
-                self.push(i, i + 1, Role::Comma);
-                self.record |= self.depth == 0;
-                i + 1
-            }
-            b'(' => {
-                self.depth += 1;
-                self.push(i, i + 1, Role::Open);
-                i + 1
-            }
-            b')' => {
-                self.depth = self.depth.saturating_sub(1);
-                self.push(i, i + 1, Role::Close);
-                i + 1
-            }
-            b'.' if self.record => {
-                self.push(i, i + 1, Role::Dot);
-                i + 1
-            }
-            b'*' | b':' | b'=' => {
-                self.push(i, i + 1, Role::Operator);
-                i + 1
-            }
-            b'[' | b'{' if !set => {
-                let end = memchr::memchr2(b']', b'}', &bytes[i..hi]).map_or(hi, |n| i + n + 1);
-                self.push(i, end, Role::Number);
-                end
-            }
-            _ => self.datum(i, hi),
-        }
-    }
-
-    /// A label, a number or a text in data.
-    pub(super) fn datum(&mut self, i: usize, hi: usize) -> usize {
+    /// A label, a number or a text in data; labels stand at the beginning of a record.
+    fn datum(&self, class: Class, i: usize, hi: usize, record: bool) -> (Role, usize) {
         let bytes = self.code.as_bytes();
         if let Some(end) = quoted_end(bytes, i) {
-            self.push(i, end, Role::Quoted);
-            self.record = self.record && self.joins(end);
-            return end;
+            return (Role::Quoted, end);
         }
-        if self.class == Class::File {
-            let end = memchr::memchr(b'/', &bytes[i..hi]).map_or(hi, |n| i + n);
-            let end = i + self.code[i..end].trim_end_matches(BLANKS).len().max(1);
-            self.push(i, end, Role::Text);
-            return end;
-        }
-        if self.class == Class::Set && !self.record {
-            // An element's text runs to the comma.
-            let end = memchr::memchr3(b',', b'/', b';', &bytes[i..hi]).map_or(hi, |n| i + n);
-            let end = i + self.code[i..end].trim_end_matches(BLANKS).len().max(1);
-            self.push(i, end, Role::Text);
-            return end;
+        // An element's text runs to the comma.
+        if class == Class::File || class == Class::Set && !record {
+            let stop = |b: &u8| *b == b'/' || class == Class::Set && matches!(b, b',' | b';');
+            let end = bytes[i..hi].iter().position(stop).map_or(hi, |n| i + n);
+            let text = self.code[i..end].trim_end_matches(BLANKS);
+            return (Role::Text, i + text.len().max(1));
         }
         let mut end = i;
         while end < hi
             && !words::is_blank(bytes[end])
             && !matches!(bytes[end], b',' | b'/' | b';' | b'(' | b')' | b':' | b'=')
         {
-            let b = bytes[end];
-            if end > i && b == b'*'
-                || b == b'.'
-                    && self.record
-                    && !self.code[i..end].bytes().all(|b| b.is_ascii_digit())
+            let joined = bytes[end] == b'.' && record;
+            if end > i && bytes[end] == b'*'
+                || joined && !self.code[i..end].bytes().all(|b| b.is_ascii_digit())
             {
                 break;
             }
             end += self.code[end..].chars().next().map_or(1, char::len_utf8);
         }
-        let end = end.max(i + 1);
-        let number = !self.record && self.class.has_values();
-        self.push(i, end, if number { Role::Number } else { Role::Label });
-        self.record = self.record && (self.depth > 0 || self.joins(end));
-        end
-    }
-
-    /// Whether a label goes on behind `at`: `a.b`, `a*b`, `a:b`.
-    pub(super) fn joins(&self, at: usize) -> bool {
-        matches!(
-            self.code[at..]
-                .trim_start_matches([' ', '\t'])
-                .as_bytes()
-                .first(),
-            Some(b'.' | b'*' | b':')
-        )
-    }
-
-    pub(super) fn model_list(&mut self, i: usize) -> usize {
-        let bytes = self.code.as_bytes();
-        match bytes[i] {
-            b'/' => {
-                let n = self.push(i, i + 1, Role::Slash);
-                self.scan.tokens[n].data = false;
-                self.phase = Phase::AfterText;
-                i + 1
-            }
-            b';' => {
-                self.push(i, i + 1, Role::Semicolon);
-                self.end(false);
-                i + 1
-            }
-            b',' => {
-                self.push(i, i + 1, Role::Comma);
-                i + 1
-            }
-            b'(' | b')' => {
-                self.push(
-                    i,
-                    i + 1,
-                    if bytes[i] == b'(' {
-                        Role::Open
-                    } else {
-                        Role::Close
-                    },
-                );
-                i + 1
-            }
-            _ => {
-                let end = words::word_end(bytes, i);
-                if end > i && words::statement_word(self.code, i, end).is_some() && self.new_line {
-                    // The slash was forgotten.
-                    self.end(false);
-                    return i;
-                }
-                let all = self.code[i..end].eq_ignore_ascii_case("all");
-                let end = self.plain(i, if all { Role::Keyword } else { Role::Name });
-                let last = self.scan.tokens.len() - 1;
-                self.scan.tokens[last].data = false;
-                end
-            }
-        }
+        let role = match !record && class.has_values() {
+            true => Role::Number,
+            false => Role::Label,
+        };
+        (role, end.max(i + 1))
     }
 
     /// The lines of a table.
-    pub(super) fn table(&mut self, i: usize, hi: usize) -> usize {
+    fn table(&mut self, lo: usize, hi: usize) {
         let bytes = self.code.as_bytes();
-        let end = words::word_end(bytes, i);
-        if self.new_line && words::begins_statement_in_table(self.code, i, end) {
-            self.end(true);
-            return i;
-        }
-        match bytes[i] {
-            b';' => {
-                self.phase = Phase::Start;
-                self.push(i, i + 1, Role::Semicolon);
-                let last = self.scan.tokens.len() - 1;
-                self.scan.tokens[last].table = true;
-                self.end(true);
-                i + 1
+        (self.data, self.table) = (true, true);
+        let mut at = lo;
+        while at < hi {
+            let b = bytes[at];
+            if words::is_blank(b) {
+                at += 1;
+                continue;
             }
-            b'.' | b'(' | b')' | b',' | b'+' | b'*' | b':'
-                if !bytes.get(i + 1).is_some_and(u8::is_ascii_digit) || bytes[i] != b'.' =>
-            {
-                self.push(i, i + 1, Role::Operator);
-                i + 1
+            let number = b == b'.' && bytes.get(at + 1).is_some_and(u8::is_ascii_digit);
+            if matches!(b, b'.' | b'(' | b')' | b',' | b'+' | b'*' | b':') && !number {
+                at = self.sign(at, Role::Operator);
+                continue;
             }
-            _ => {
-                if let Some(end) = quoted_end(bytes, i) {
-                    self.push(i, end, Role::Quoted);
-                    return end;
+            let stops = |b: u8| words::is_blank(b) || matches!(b, b';' | b'(' | b')' | b',');
+            let (role, end) = match quoted_end(bytes, at) {
+                Some(end) => (Role::Quoted, end),
+                None => {
+                    let line = hi.min(self.line_end(at));
+                    let end = (at..line).find(|n| stops(bytes[*n])).unwrap_or(line);
+                    match self.code[at..end].parse::<f64>().is_ok() {
+                        true => (Role::Number, end.max(at + 1)),
+                        false => (Role::Label, end.max(at + 1)),
+                    }
                 }
-                let stops = |b: u8| words::is_blank(b) || matches!(b, b';' | b'(' | b')' | b',');
-                let end = (i..hi).find(|n| stops(bytes[*n])).unwrap_or(hi).max(i + 1);
-                let word = &self.code[i..end];
-                let number = word.parse::<f64>().is_ok();
-                self.push(i, end, if number { Role::Number } else { Role::Label });
-                end
-            }
+            };
+            self.push(at, end, role);
+            at = end;
         }
+        (self.data, self.table) = (false, false);
     }
 }

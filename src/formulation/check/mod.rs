@@ -6,9 +6,8 @@ mod transposed;
 
 use super::derive::Primal;
 use super::tree::Variable;
-use super::{Formulation, dual, kkt, text};
+use super::{Formulation, Scope, dual, kkt, text};
 use crate::check::node::SymbolId;
-use crate::check::symbols::{Store, Symbols};
 use crate::data::universe::{Label, Universe};
 use crate::host::{Found, Host, HostError};
 use crate::model::origin::{Block, Blocks};
@@ -146,16 +145,10 @@ impl Instance {
     }
 }
 
-/// A row or column of the model, as it is called.
-fn called(symbols: &Symbols, store: &Store, blocks: &Blocks, i: usize) -> String {
-    let b = blocks.of(i as u32);
-    text::record(store, &symbols.get(b.symbol).name, b.key(i as u32))
-}
-
 /// Generates a derived model: its text is read, its data are handed over; the first complaint where it cannot be.
-fn generated(symbols: &Symbols, store: &Store, f: &Formulation) -> Result<Instance, String> {
+fn generated(scope: Scope, f: &Formulation) -> Result<Instance, String> {
     let mut inputs = Vec::new();
-    let text = text::model(symbols, store, f, None, "", true, Some(&mut inputs));
+    let text = text::model(scope, f, None, "", true, Some(&mut inputs));
     let mut host = Text { text: &text };
     let options = Options {
         quiet: true,
@@ -180,7 +173,7 @@ fn generated(symbols: &Symbols, store: &Store, f: &Formulation) -> Result<Instan
         false,
         &mut |m| {
             if let Some((_, Some(g))) = m.take_study() {
-                found = Some(Instance::new(m, g, &store.universe));
+                found = Some(Instance::new(m, g, &scope.store.universe));
             }
         },
     );
@@ -208,30 +201,22 @@ fn eliminated(primal: &Primal, f: &Formulation, z: Option<usize>) -> Option<usiz
 }
 
 /// The dual of a model as it is written, and the comparison of its matrix with the model's. `Err` says why there is none.
-pub fn checked_dual(
-    symbols: &Symbols,
-    store: &Store,
-    primal: &Primal,
-) -> Result<(Formulation, Comparison), String> {
-    let f = dual::dual(symbols, store, primal, false)?;
-    let d = generated(symbols, store, &f)?;
-    let c = transposed::dual(symbols, store, primal, &f, &d);
+pub fn checked_dual(scope: Scope, primal: &Primal) -> Result<(Formulation, Comparison), String> {
+    let f = dual::dual(scope, primal, false)?;
+    let d = generated(scope, &f)?;
+    let c = transposed::dual(scope, primal, &f, &d);
     Ok((f, c))
 }
 
 /// The optimality conditions of a model as they are written, and the comparison of their rows with automatic derivatives at
 /// points drawn at random. `Err` says why there are none.
-pub fn checked_kkt(
-    symbols: &Symbols,
-    store: &Store,
-    primal: &Primal,
-) -> Result<(Formulation, Comparison), String> {
+pub fn checked_kkt(scope: Scope, primal: &Primal) -> Result<(Formulation, Comparison), String> {
     let derived = |keep| -> Result<(Formulation, Instance), String> {
-        let f = kkt::kkt(symbols, store, primal, keep, false).map_err(|(_, why)| why)?;
-        generated(symbols, store, &f).map(|d| (f, d))
+        let f = kkt::kkt(scope, primal, keep, false).map_err(|(_, why)| why)?;
+        generated(scope, &f).map(|d| (f, d))
     };
     let (f, d) = derived(false).or_else(|why| derived(true).map_err(|_| why))?;
-    let c = slopes::kkt(symbols, store, primal, &f, &d, POINTS);
+    let c = slopes::kkt(scope, primal, &f, &d, POINTS);
     Ok((f, c))
 }
 

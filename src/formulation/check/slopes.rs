@@ -1,11 +1,10 @@
 //! Optimality conditions against the automatic derivatives of the model they come from.
 
-use super::{Comparison, Instance, called, eliminated};
+use super::{Comparison, Instance, eliminated};
 use crate::autodiff::Evaluator;
-use crate::check::symbols::{Store, Symbols};
 use crate::formulation::derive::Primal;
 use crate::formulation::tree::Variable;
-use crate::formulation::{Formulation, Origin};
+use crate::formulation::{Formulation, Origin, Scope};
 use crate::model::instance::{self, Relation, Sense};
 use crate::model::origin::Block;
 use crate::solve::random::Random;
@@ -13,15 +12,14 @@ use crate::solve::random::Random;
 /// Compares the generated optimality conditions with `∇f − Jᵀλ` of the model's automatic derivatives, and its rows with the
 /// model's, at points around the answer drawn at random.
 pub(super) fn kkt(
-    symbols: &Symbols,
-    store: &Store,
+    scope: Scope,
     primal: &Primal,
     f: &Formulation,
     d: &Instance,
     points: usize,
 ) -> Comparison {
     let mut c = Comparison::default();
-    let mut places = Places::new(symbols, store, primal, f, d);
+    let mut places = Places::new(scope, primal, f, d);
     if let Some(missing) = places.missing.take() {
         c.differ(missing);
         return c;
@@ -92,13 +90,7 @@ fn constrained(p: &instance::Instance) -> Vec<bool> {
 }
 
 impl<'a> Places<'a> {
-    fn new(
-        symbols: &Symbols,
-        store: &Store,
-        primal: &'a Primal,
-        f: &Formulation,
-        d: &'a Instance,
-    ) -> Self {
+    fn new(scope: Scope, primal: &'a Primal, f: &Formulation, d: &'a Instance) -> Self {
         let g = &primal.generated;
         let p = &g.instance;
         let z = p.objective.map_or(0, |o| o.column as usize);
@@ -113,13 +105,13 @@ impl<'a> Places<'a> {
         let matters = constrained(p);
         for b in &g.origin.columns.list {
             let row = row_of(Variable::Own(b.symbol));
-            let own = d.columns(&symbols.get(b.symbol).name);
+            let own = d.columns(&scope.get(b.symbol).name);
             for k in b.start..b.start + b.len {
                 let j = k as usize;
                 if gone.is_some() && j == z {
                     continue;
                 }
-                let name = || called(symbols, store, &g.origin.columns, j);
+                let name = || scope.called(&g.origin.columns, j);
                 let key = b.key(k);
                 let Some(at) = find(own, key) else {
                     if matters[j] {
@@ -147,7 +139,7 @@ impl<'a> Places<'a> {
                     (Some(y), Some(r)) => rows[i] = Some((y, r)),
                     _ if p.rows.relation[i] == Relation::Free => {}
                     _ => {
-                        let name = called(symbols, store, &g.origin.rows, i);
+                        let name = scope.called(&g.origin.rows, i);
                         missing = Some(format!("the row {name} is not in the conditions"));
                     }
                 }

@@ -1,12 +1,11 @@
 //! The matrix of a dual against the transposed matrix of the model it comes from.
 
-use super::{Comparison, Instance, called, eliminated};
+use super::{Comparison, Instance, eliminated};
 use crate::autodiff::Evaluator;
 use crate::check::node::SymbolId;
-use crate::check::symbols::{Store, Symbols};
 use crate::formulation::derive::Primal;
 use crate::formulation::tree::Variable;
-use crate::formulation::{Formulation, Origin};
+use crate::formulation::{Formulation, Origin, Scope};
 use crate::model::instance::{self, Relation};
 use crate::model::origin::Block;
 use crate::solve::random::Random;
@@ -14,17 +13,11 @@ use rustc_hash::FxHashMap;
 
 /// Compares the generated dual with the transposed primal: matrix, right sides, costs, bounds and relations. Of quadratic
 /// programs the tangents are compared, at points drawn at random: there the one is the linear dual of the other.
-pub(super) fn dual(
-    symbols: &Symbols,
-    store: &Store,
-    primal: &Primal,
-    f: &Formulation,
-    d: &Instance,
-) -> Comparison {
+pub(super) fn dual(scope: Scope, primal: &Primal, f: &Formulation, d: &Instance) -> Comparison {
     let mut c = Comparison::default();
     let p = &primal.generated.instance;
     let dual = &d.generated.instance;
-    let names = Names::new(symbols, store, primal, f, d);
+    let names = Names::new(scope, primal, f, d);
     if p.is_linear() {
         compare(f, &names, p, dual, &mut c);
         return c;
@@ -76,8 +69,7 @@ fn tangents(p: &instance::Instance, x: &[f64], without: &[bool]) -> Option<insta
 
 /// The rows and columns of a model, and where they are in its dual.
 struct Names<'a> {
-    symbols: &'a Symbols,
-    store: &'a Store,
+    scope: Scope<'a>,
     primal: &'a Primal,
     d: &'a Instance,
     /// The dual's columns by what their multipliers belong to.
@@ -85,17 +77,10 @@ struct Names<'a> {
 }
 
 impl<'a> Names<'a> {
-    fn new(
-        symbols: &'a Symbols,
-        store: &'a Store,
-        primal: &'a Primal,
-        f: &Formulation,
-        d: &'a Instance,
-    ) -> Self {
+    fn new(scope: Scope<'a>, primal: &'a Primal, f: &Formulation, d: &'a Instance) -> Self {
         let multipliers = f.multipliers.iter();
         Self {
-            symbols,
-            store,
+            scope,
             primal,
             d,
             multipliers: multipliers
@@ -106,12 +91,12 @@ impl<'a> Names<'a> {
 
     fn row(&self, i: usize) -> String {
         let rows = &self.primal.generated.origin.rows;
-        called(self.symbols, self.store, rows, i)
+        self.scope.called(rows, i)
     }
 
     fn column(&self, j: usize) -> String {
         let columns = &self.primal.generated.origin.columns;
-        called(self.symbols, self.store, columns, j)
+        self.scope.called(columns, j)
     }
 
     /// The column in the dual that belongs to a row.

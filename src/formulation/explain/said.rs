@@ -37,7 +37,7 @@ impl Explained<'_> {
         let mut out: Vec<(String, usize)> = Vec::new();
         for each in sorted.chunk_by(|a, b| class(a) == class(b)) {
             let block = blocks.of(each[0].at as u32);
-            let (whole, name) = (block.len as usize, &self.symbols.get(block.symbol).name);
+            let (whole, name) = (block.len as usize, &self.scope.get(block.symbol).name);
             let mut alike: Vec<&[&Said]> = each.chunk_by(|a, b| words(a) == words(b)).collect();
             alike.sort_by_key(|a| a[0].at);
             if alike.len() > MAX_SENTENCES {

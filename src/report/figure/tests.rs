@@ -120,28 +120,6 @@ fn hostile_values_are_left_out() {
 }
 
 #[test]
-fn a_block_lies_where_it_should() {
-    let square = vec![[0.0, 0.0], [4.0, 0.0], [4.0, 2.0], [0.0, 2.0]];
-    let scene = Scene {
-        elements: vec![Element::new(Shape::Polygon(square))],
-        ..Scene::default()
-    };
-    // 684 pixels for 4.16 units; y upwards.
-    assert!(svg(&scene).contains("points=\"31.15,"), "{}", svg(&scene));
-    let text = svg(&scene);
-    let points = text.split("points=\"").nth(1).expect("a polygon");
-    let points: Vec<f64> = points
-        .split('"')
-        .next()
-        .expect("its points")
-        .split([' ', ','])
-        .map(|n| n.parse().expect("a number"))
-        .collect();
-    let (wide, high) = (points[2] - points[0], points[1] - points[5]);
-    assert!((wide / high - 2.0).abs() < 1e-3 && high > 0.0);
-}
-
-#[test]
 fn colors_are_checked() {
     assert_eq!(Paint::parse("Red"), Some(Paint::Color("red".into())));
     assert_eq!(

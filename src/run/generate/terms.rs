@@ -182,11 +182,11 @@ impl Builder<'_, '_> {
                 tape.columns.push(*c);
             }
             _ => {
-                tape.ops.push(Op::Affine {
-                    constant: tape.constants.len() as u32,
-                    variable: tape.columns.len() as u32,
-                    terms: terms.len() as u32,
-                });
+                tape.ops.push(Op::Affine(
+                    tape.constants.len() as u32,
+                    tape.columns.len() as u32,
+                    terms.len() as u32,
+                ));
                 tape.constants.push(part.constant);
                 for (c, v) in terms {
                     tape.constants.push(v);

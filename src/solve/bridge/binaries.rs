@@ -213,14 +213,7 @@ impl Known {
             stack.push(match (op, &arguments[..]) {
                 (Op::Var(k), _) => self.column(term.columns[k as usize], 1.0),
                 (Op::Const(k), _) => constant(term.constants[k as usize]),
-                (
-                    Op::Affine {
-                        constant: c,
-                        variable: v,
-                        terms: n,
-                    },
-                    _,
-                ) => {
+                (Op::Affine(c, v, n), _) => {
                     let (c, v, n) = (c as usize, v as usize, n as usize);
                     let slopes = term.constants[c + 1..c + 1 + n].iter();
                     let terms = term.columns[v..v + n].iter().zip(slopes);

@@ -172,14 +172,7 @@ fn slope(e: &Term, column: u32) -> Slope {
         stack.push(match (op, &a[..]) {
             (Op::Var(k), _) => (of_variable(k), None),
             (Op::Const(k), _) => (Slope::None, Some(e.constants[k as usize])),
-            (
-                Op::Affine {
-                    constant,
-                    variable,
-                    terms,
-                },
-                _,
-            ) => {
+            (Op::Affine(constant, variable, terms), _) => {
                 let each = (0..terms).map(|m| {
                     of_variable(variable + m).times(e.constants[(constant + 1 + m) as usize])
                 });

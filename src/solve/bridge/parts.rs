@@ -82,7 +82,7 @@ impl Term {
 
     /// Whether it depends on its columns by one affine expression.
     pub(super) fn is_of_one_sum(&self) -> bool {
-        let leaf = |op: &&Op| matches!(op, Op::Var(_) | Op::Affine { .. });
+        let leaf = |op: &&Op| matches!(op, Op::Var(_) | Op::Affine(..));
         self.ops.iter().filter(leaf).count() == 1
     }
 
@@ -145,14 +145,7 @@ impl<'e> Tree<'e> {
         match (self.whole.ops[p], &arguments[..]) {
             (Op::Const(k), _) => out.constant += weight * constants[k as usize],
             (Op::Var(k), _) => out.linear.push((columns[k as usize], weight)),
-            (
-                Op::Affine {
-                    constant,
-                    variable,
-                    terms,
-                },
-                _,
-            ) => {
+            (Op::Affine(constant, variable, terms), _) => {
                 let (c, v, n) = (constant as usize, variable as usize, terms as usize);
                 out.constant += weight * constants[c];
                 let slopes = columns[v..v + n].iter().zip(&constants[c + 1..c + 1 + n]);
@@ -202,7 +195,7 @@ impl<'e> Tree<'e> {
     ) {
         let op = self.whole.ops[p];
         let size = match op {
-            Op::Affine { terms, .. } => terms as usize,
+            Op::Affine(_, _, terms) => terms as usize,
             Op::Add | Op::AddN(_) | Op::Subtract => p + 1 - self.begin[p],
             _ => 0,
         };

@@ -277,14 +277,7 @@ fn affine(group: &KernelTerms, term: KernelTerm, j: usize, level: &[f64]) -> Opt
         let next = match (*op, &stack[at..]) {
             (Op::Var(k), _) => value(k),
             (Op::Const(k), _) => (constant(k), 0.0),
-            (
-                Op::Affine {
-                    constant: c,
-                    variable: v,
-                    terms: n,
-                },
-                _,
-            ) => (0..n).fold((constant(c), 0.0), |s, m| {
+            (Op::Affine(c, v, n), _) => (0..n).fold((constant(c), 0.0), |s, m| {
                 let ((a, b), weight) = (value(v + m), constant(c + 1 + m));
                 plus(s, (weight * a, weight * b))
             }),

@@ -181,7 +181,7 @@ pub fn composed(term: &Term, columns: &Columns) -> Composed {
         };
         let value = match (*op, &a[..]) {
             (Op::Const(_), _) => Composed::affine(0, range),
-            (Op::Var(_) | Op::Affine { .. }, _) => {
+            (Op::Var(_) | Op::Affine(..), _) => {
                 Composed::affine(u8::from(range.low != range.high), range)
             }
             _ if degree == 0 => Composed::affine(0, range),

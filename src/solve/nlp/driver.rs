@@ -170,7 +170,7 @@ fn most_products(instance: &Instance) -> Option<u64> {
         }
     };
     let size = |op: &Op| match op {
-        Op::Affine { terms, .. } => *terms as usize,
+        Op::Affine(_, _, terms) => *terms as usize,
         _ => 1,
     };
     let each = |t: &KernelTerms| t.row.len() * t.kernel.ops.iter().map(size).sum::<usize>();

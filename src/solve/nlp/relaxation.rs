@@ -75,14 +75,7 @@ pub(super) fn operation(op: Op, a: &[Interval], at: &[Interval], constants: &[f6
     let value = match (op, a) {
         (Op::Const(k), _) => Interval::point(constants[k as usize]),
         (Op::Var(v), _) => at[v as usize],
-        (
-            Op::Affine {
-                constant,
-                variable,
-                terms,
-            },
-            _,
-        ) => {
+        (Op::Affine(constant, variable, terms), _) => {
             let (c, v) = (constant as usize, variable as usize);
             let each = (0..terms as usize).map(|m| at[v + m] * constants[c + 1 + m]);
             each.fold(Interval::point(constants[c]), |s, t| s + t)

@@ -2,99 +2,6 @@
 
 use super::*;
 
-fn all(text: &str, kind: DataKind) -> Vec<String> {
-    fn part(p: &KeyPart<'_>) -> String {
-        match p {
-            KeyPart::Label {
-                text, quoted: true, ..
-            } => format!("'{text}'"),
-            KeyPart::Label { text, .. } => (*text).to_owned(),
-            KeyPart::Range { from, to, .. } => format!("{from}*{to}"),
-            KeyPart::AllOf { set, .. } => format!("#{set}"),
-            KeyPart::Universe(_) => "*".into(),
-            KeyPart::Factor(x) => x.to_string(),
-            KeyPart::Matched(a, b) => {
-                let key = |k: &[KeyPart<'_>]| k.iter().map(part).collect::<Vec<_>>().join(".");
-                format!("{}:{}", key(a), key(b))
-            }
-            KeyPart::Group(g) => format!(
-                "({})",
-                g.iter().map(|k| key(k)).collect::<Vec<_>>().join(",")
-            ),
-        }
-    }
-    fn key(k: &[KeyPart<'_>]) -> String {
-        k.iter().map(part).collect::<Vec<_>>().join(".")
-    }
-    let mut r = DataReader::new(text, 0, kind, false);
-    let mut out = Vec::new();
-    while let Some(x) = r.next() {
-        out.push(match x {
-            Ok(r) => {
-                let tail = match &r.value {
-                    Tail::None => String::new(),
-                    Tail::Number(x, _) => format!("={x}"),
-                    Tail::Text(t, _) => format!(" \"{t}\""),
-                    Tail::Name(n, _) => format!("~{n}"),
-                };
-                format!("{}{tail}", key(r.key))
-            }
-            Err(d) => format!("!{}", d.code),
-        });
-    }
-    out
-}
-
-#[test]
-fn sets() {
-    let read = |t| all(t, DataKind::Set);
-    assert_eq!(
-        read(" a  first one, b 'the second',\n'c d'   it's third\n"),
-        [
-            "a \"first one\"",
-            "b \"the second\"",
-            "'c d' \"it's third\""
-        ]
-    );
-    assert_eq!(
-        read("i1*i10, 1990*1992, 't 1'*'t 3'"),
-        ["i1*i10", "1990*1992", "t 1*t 3"]
-    );
-    assert_eq!(
-        read("a.b, c.(d,e) two, (f,g*h).(i.j,k), p . q"),
-        ["a.b", "c.(d,e) \"two\"", "(f,g*h).(i.j,k)", "p.q"]
-    );
-    assert_eq!(
-        read("#i.#j, set.set, k.set, a-1, b+2"),
-        ["#i.#j", "#set", "#k", "a-1", "b+2"]
-    );
-    assert_eq!(read("#a:#b, (x,y):(u,v)"), ["#a:#b", "(x,y):(u,v)"]);
-    assert_eq!(read("a (x=y) $ %;\nb"), ["a \"(x=y) $ %;\"", "b"]);
-    assert_eq!(read("a%b, c"), ["!E0243", "c"]);
-    assert_eq!(read(""), Vec::<String>::new());
-}
-
-#[test]
-fn values() {
-    let read = |t| all(t, DataKind::Values);
-    assert_eq!(read(" 5 "), ["=5"]);
-    assert_eq!(read("-.5e1"), ["=-5"]);
-    assert_eq!(read("- 5"), ["=-5"]);
-    assert_eq!(read("inf"), ["=inf"]);
-    assert_eq!(read("1990 5\n1991 6.5"), ["1990=5", "1991=6.5"]);
-    assert_eq!(read("a mon, b +inf, c yes"), ["a~mon", "b=inf", "c=1"]);
-    assert_eq!(read("a 1x, b 2"), ["!E0245", "b=2"]);
-    assert_eq!(read("1.2.3 4"), ["1.2.3=4"]);
-    assert_eq!(read("a\n 7"), ["a=7"]);
-    let mut one = DataReader::new("a .5", 0, DataKind::Values, false).with_arity(1);
-    match one.next() {
-        Some(Ok(r)) => assert!(matches!(r.value, Tail::Number(0.5, _))),
-        other => panic!("{other:?}"),
-    }
-    assert_eq!(read("i1*i3 4"), ["i1*i3=4"]);
-    assert_eq!(read("(a,b 2"), ["!E0241"]);
-}
-
 /// Records as text, with places; `plainly`: those that can be read by [`DataReader::plain`] are.
 fn records(text: &str, kind: DataKind, arity: usize, plainly: bool) -> Vec<String> {
     let mut r = DataReader::new(text, 7, kind, false).with_arity(arity);
@@ -152,24 +59,6 @@ proptest::proptest! {
         let text = text.concat();
         proptest::prop_assert_eq!(records(&text, kind, arity, true), records(&text, kind, arity, false));
     }
-}
-
-#[test]
-fn special_values() {
-    let value = |t: &str| {
-        let text = format!("a {t}");
-        let mut r = DataReader::new(&text, 0, DataKind::Values, true);
-        match r.next() {
-            Some(Ok(Record {
-                value: Tail::Number(x, _),
-                ..
-            })) => x,
-            other => panic!("{other:?}"),
-        }
-    };
-    use crate::data::value::*;
-    assert!(is_eps(value("eps")) && is_eps(value("1e-400")));
-    assert!(is_na(value("NA")) && is_undf(value("undf")) && is_undf(value("1e400")));
 }
 
 proptest::proptest! {
