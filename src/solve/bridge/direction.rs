@@ -11,6 +11,9 @@ use std::collections::BTreeMap;
 /// How far the chain of variables that make up for each other is followed.
 const DEPTH: usize = 8;
 
+/// Equations that are looked at for one: their number grows with the depth as that of ways through a network does.
+const LOOKS: usize = 1000;
+
 /// How a value depends on a variable.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 enum Slope {
@@ -61,6 +64,8 @@ pub(super) struct Directions<'i> {
     inside: Vec<Vec<u32>>,
     /// By equation: the column that makes it hold.
     pub(super) makes_up: BTreeMap<usize, usize>,
+    /// Looks that are left.
+    looks: usize,
 }
 
 impl<'i> Directions<'i> {
@@ -73,6 +78,7 @@ impl<'i> Directions<'i> {
             terms: Vec::new(),
             inside: vec![Vec::new(); m],
             makes_up: BTreeMap::new(),
+            looks: 0,
         };
         for i in 0..m {
             for (j, a) in instance.matrix.row(i) {
@@ -94,13 +100,15 @@ impl<'i> Directions<'i> {
 
     /// Whether what the left side of this equation lacks (or has too much of) can be made up for; by what is noted.
     pub(super) fn can_relax(&mut self, row: usize, lacks: bool) -> bool {
+        self.looks = LOOKS;
         self.compensator(row, lacks, DEPTH)
     }
 
     fn compensator(&mut self, row: usize, lacks: bool, depth: usize) -> bool {
-        if depth == 0 {
+        if depth == 0 || self.looks == 0 {
             return false;
         }
+        self.looks -= 1;
         let instance = self.instance;
         let c = &instance.columns;
         let free = |j: usize| c.kind[j] == ColumnKind::Continuous && c.lower[j] != c.upper[j];
