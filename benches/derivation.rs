@@ -5,7 +5,7 @@
 //! Medians of interleaved runs, in milliseconds of processor time, for a wall of n courses of n blocks.
 
 use bmod::cli::host::{Output, SystemHost};
-use bmod::formulation::{check, dual, study};
+use bmod::formulation::{Scope, check, dual, study};
 use bmod::run::{Options, StudyChoice};
 use bmod::session;
 use bmod::source::PreprocessOptions;
@@ -51,9 +51,9 @@ fn wall(n: usize) -> ([f64; 3], usize) {
         let mut times = vec![processor()];
         let (primal, _) = study::primal(m).expect("it is generated");
         times.push(processor());
-        dual::dual(&m.symbols, &m.store, &primal, false).expect("a dual");
+        dual::dual(Scope::of(m), &primal, false).expect("a dual");
         times.push(processor());
-        let (_, c) = check::checked_dual(&m.symbols, &m.store, &primal).expect("a dual");
+        let (_, c) = check::checked_dual(Scope::of(m), &primal).expect("a dual");
         times.push(processor());
         assert!(c.passed(), "{:?}", c.differences);
         let spent = |k: usize| (times[k + 1] - times[k]) / 1e6;

@@ -171,7 +171,7 @@ def main():
                     cells.append(f"{seconds:.2f}, {search.get('nodes')}{gap}")
                     values.append(s["objective"])
                 out, _ = spent([sys.executable, __file__, "highs:" + path + ".mps", "--limit", str(a.limit)])
-                seconds, value, nodes, gap = json.loads(out)
+                seconds, value, nodes, gap = json.loads(out.splitlines()[-1])
                 cells.append(f"{seconds:.2f}, {nodes}" + (f", gap {100 * gap:.1f} %" if gap > 1.01e-4 else ""))
                 values.append(value)
                 same = all(v is not None and abs(v - value) <= 2e-4 * abs(value) for v in values)

@@ -176,6 +176,9 @@ const FIRST_NODES: [u64; 2] = [5, 500];
 /// Nodes of the linear program with integers in bits, at most: its bounds may rise slowly.
 const BIT_NODES: u64 = 20_000;
 
+/// A gap of the linear program's relaxation, relative to a solution, with which no tree ends: the nonlinear one is searched.
+const HOPELESS: f64 = 10.0;
+
 /// The program without products that have a binary factor, where it is linear or convex quadratic without them and was neither
 /// before. It starts at the best point of a few nodes of the nonlinear program.
 fn replaced(task: &Task, aim: Aim, settings: &Settings, budget: &Budget) -> Option<Replaced> {
@@ -204,7 +207,20 @@ fn replaced(task: &Task, aim: Aim, settings: &Settings, budget: &Budget) -> Opti
     let first = budget.within(seconds, u64::MAX, |budget| {
         nonlinear_search(task, false, aim, settings, &mut Control::new(budget))
     });
-    if let Some(x) = first.ok().and_then(|found| found.x) {
+    if let Ok(Found {
+        x: Some(x), value, ..
+    }) = first
+    {
+        let relaxed = Task::new(ProblemType::Rmip, &replaced.instance);
+        let answer = budget.aside(|budget| subproblem(&relaxed, settings, budget));
+        if let (Ok(answer), Some(o)) = (answer, instance.objective)
+            && answer.status.is_solution()
+        {
+            let bound = o.sense.sign() * answer.outcome.level[o.column as usize];
+            if value - bound > HOPELESS * value.abs().max(1.0) {
+                return None;
+            }
+        }
         replaced.start_at(&x);
     }
     Some(replaced)

@@ -199,7 +199,7 @@ fn pairs(n: usize, sets: &[Vec<u32>]) -> Vec<(usize, usize)> {
 }
 
 /// x moved by up to this fraction of its size (at least by this much), inwards from its bounds; or, where that is asked for, anywhere
-/// between near bounds. With `by` 0 halfway between them.
+/// between near bounds. With `by` 0 halfway between them, and where they are not near a unit away from 0.
 fn placed(nlp: &Problem, x: &[f64], by: f64, anywhere: bool, seed: u64) -> Vec<f64> {
     let (lower, upper) = nlp.bounds();
     let mut random = Random(seed);
@@ -208,7 +208,10 @@ fn placed(nlp: &Problem, x: &[f64], by: f64, anywhere: bool, seed: u64) -> Vec<f
         if anywhere && u - l <= 1e4 {
             return l + r * (u - l);
         }
-        let there = x + (2.0 * r - 1.0) * by * x.abs().max(1.0);
+        let there = match by {
+            0.0 if x == 0.0 => 1.0,
+            _ => x + (2.0 * r - 1.0) * by * x.abs().max(1.0),
+        };
         let inside = match there {
             y if y < l => 2.0 * l - y,
             y if y > u => 2.0 * u - y,

@@ -27,7 +27,8 @@ pub(super) enum From {
     Moved(f64),
     /// Anywhere between near bounds, the start moved where there are none; the number is a seed.
     Anywhere(u64),
-    /// Halfway between near bounds, the start where there are none. Products of variables that start at 0 have no slopes there.
+    /// Halfway between near bounds; where there are none the start, or a unit inside the bounds if that is 0: products of
+    /// variables that start at 0 have no slopes there.
     Middle,
 }
 
