@@ -9,6 +9,8 @@ processor time, nodes, and values: of bmod the whole process, of highspy what re
 """
 import argparse, json, os, random, resource, subprocess, sys, tempfile
 
+import integer_kinds
+
 
 def cover(n):
     m = n // 4
@@ -75,6 +77,7 @@ FAMILIES = {
     "assignment": (assignment, [15, 25, 40, 60]),
     "lots": (lots, [8, 12, 20, 32]),
     "bins": (bins, [8, 12, 16, 24, 32]),
+    **integer_kinds.FAMILIES,
 }
 
 

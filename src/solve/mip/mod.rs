@@ -176,8 +176,10 @@ const FIRST_NODES: [u64; 2] = [5, 500];
 /// Nodes of the linear program with integers in bits, at most: its bounds may rise slowly.
 const BIT_NODES: u64 = 20_000;
 
-/// A gap of the linear program's relaxation, relative to a solution, with which no tree ends: the nonlinear one is searched.
+/// A gap of the linear program's relaxation, relative to a solution, with which no tree over so many columns ends: the
+/// nonlinear one is searched.
 const HOPELESS: f64 = 10.0;
+const MANY_COLUMNS: usize = 300;
 
 /// The program without products that have a binary factor, where it is linear or convex quadratic without them and was neither
 /// before. It starts at the best point of a few nodes of the nonlinear program.
@@ -212,8 +214,9 @@ fn replaced(task: &Task, aim: Aim, settings: &Settings, budget: &Budget) -> Opti
     }) = first
     {
         let relaxed = Task::new(ProblemType::Rmip, &replaced.instance);
-        let answer = budget.aside(|budget| subproblem(&relaxed, settings, budget));
-        if let (Ok(answer), Some(o)) = (answer, instance.objective)
+        let many = replaced.instance.column_count() > MANY_COLUMNS;
+        let answer = many.then(|| budget.aside(|budget| subproblem(&relaxed, settings, budget)));
+        if let (Some(Ok(answer)), Some(o)) = (answer, instance.objective)
             && answer.status.is_solution()
         {
             let bound = o.sense.sign() * answer.outcome.level[o.column as usize];
