@@ -144,7 +144,7 @@ strategies! {
             "nothing",
             "bmod";
         InfeasibilityDoubt "infeasibility_doubt",
-            "linear programs prove that nothing nearby is feasible: again from halfway between the bounds, or a unit from 0",
+            "linear programs prove that nothing nearby is feasible: again from where the linear rows hold, near the middle between the bounds, or a unit from 0",
             "100 steps",
             "multistart";
         InteriorDoubt "interior_doubt",

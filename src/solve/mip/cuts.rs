@@ -5,13 +5,15 @@
 //! `Σ (⌊a_j⌋ + max(0, f_j − f)/(1 − f)) t_j + Σ min(0, g_k)/(1 − f) s_k ≤ ⌊b⌋`. A row of the optimal tableau gives
 //! Gomory's mixed-integer cut (1960); single rows, and rows added so that continuous columns between their bounds cancel,
 //! with variable bounds `x ≤ u·y` put in, give those that lot sizing and fixed charges need. Knapsack rows give extended
-//! covers besides; rows of integers alone, added so that what is odd cancels, cuts of halves.
+//! covers besides; rows of integers alone, added so that what is odd cancels, cuts of halves; jobs in sequence the times of
+//! those before and after.
 
 use super::linear::{Cut, Linear};
 use super::model::Mip;
 use crate::solve::lp::simplex::factor::Entries;
 
 mod parity;
+mod sequence;
 
 /// Fractions nearer to 0 or 1 give nothing but numerical trouble.
 const FRACTION: f64 = 0.01;
@@ -29,6 +31,7 @@ pub struct Separator<'a> {
     variable_upper: Vec<Option<(usize, f64)>>,
     /// The step of a row's activities, where it has integer columns only; 0 for others. Of the cuts so far, too.
     step: Vec<f64>,
+    sequences: Option<sequence::Sequences>,
     lower: &'a [f64],
     upper: &'a [f64],
 }
@@ -142,6 +145,7 @@ impl<'a> Separator<'a> {
             mip,
             variable_upper,
             step,
+            sequences: sequence::Sequences::find(mip, lower, upper),
             lower,
             upper,
         }
@@ -176,6 +180,15 @@ impl<'a> Separator<'a> {
                     add(self.round(linear, &row, sign, &values, &[1.0]));
                 }
             }
+        }
+        for (terms, side) in self
+            .sequences
+            .iter()
+            .flat_map(|s| s.separate(self, &values))
+        {
+            let mut out = vec![0.0; n];
+            terms.iter().for_each(|&(j, a)| out[j] += a);
+            add(self.clean(out, side, &values));
         }
         // single and aggregated rows
         for i in (0..self.mip.problem.m()).take(3000) {

@@ -107,6 +107,43 @@ impl Quadratic {
     }
 }
 
+/// The point nearest to x that is within the bounds and satisfies the linear rows. None: there is none, or it was not found.
+pub(super) fn nearest(problem: &mut Problem, x: &[f64], budget: &Budget) -> Option<Vec<f64>> {
+    let degrees = problem.evaluator.degrees();
+    let linear = |&i: &u32| degrees[i as usize] == Degree::Linear;
+    let linear: Vec<bool> = problem.rows.iter().map(linear).collect();
+    let (n, m) = problem.size();
+    let mut values = vec![0.0; m];
+    problem.constraints(x, &mut values)?;
+    let mut entries = problem.jacobian_entries(x)?;
+    entries.retain(|e| linear[e.0]);
+    let rows = by_rows(m, &entries);
+    // in steps from x
+    let less = |side: &[f64], by: &[f64]| side.iter().zip(by).map(|(s, v)| s - v).collect();
+    let ((lower, upper), (row_lower, row_upper)) = (problem.bounds(), problem.sides());
+    let mut steps = form::Problem {
+        cost: vec![0.0; n],
+        lower: less(lower, x),
+        upper: less(upper, x),
+        row_lower: less(row_lower, &values),
+        row_upper: less(row_upper, &values),
+        columns: rows.transpose(n),
+        rows,
+        offset: 0.0,
+    };
+    for i in (0..m).filter(|&i| !linear[i]) {
+        (steps.row_lower[i], steps.row_upper[i]) = (f64::NEG_INFINITY, f64::INFINITY);
+    }
+    let identity: Vec<Entry> = (0..n).map(|j| (j, j, 1.0)).collect();
+    let run = (lp::QUADRATIC.solve)(&steps, &by_rows(n, &identity), budget);
+    let inside = |(x, (d, (l, u))): (&f64, (f64, (&f64, &f64)))| (x + d).max(*l).min(*u);
+    let bounds = lower.iter().zip(upper);
+    (run.ended == lp::Ended::Solved).then(|| {
+        let steps = run.point.x.into_iter();
+        x.iter().zip(steps.zip(bounds)).map(inside).collect()
+    })
+}
+
 /// Rows from entries ordered by row.
 pub(super) fn by_rows(m: usize, entries: &[Entry]) -> Sparse {
     let mut out = Sparse::new();

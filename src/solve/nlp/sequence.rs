@@ -4,6 +4,7 @@ use super::driver::Driver;
 use super::growth::Growth;
 use super::interior_point::{Ended, lock};
 use super::newton;
+use super::quadratic::nearest;
 use super::schedule::From;
 use super::slqp::{self, Effort};
 use super::trial::{Trial, active_set};
@@ -62,12 +63,14 @@ impl Driver<'_, '_> {
         Ok(settled)
     }
 
-    /// Where nothing near the start is feasible: from halfway between the bounds. Whether that settles it.
+    /// Where nothing near the start is feasible: from where the linear rows hold, near the middle between the bounds. Whether that
+    /// settles it.
     fn doubt(&mut self) -> Result<bool, SolveError> {
         let violation = |t: &Trial| t.residuals.primal_relative;
         let before = self.best.as_ref().map_or(f64::INFINITY, violation);
-        let x = self.start_point(From::Middle);
-        self.sequential(x, None, Effort::FULL);
+        let middle = self.start_point(From::Middle);
+        let near = nearest(&mut lock(&self.problem), &middle, self.budget);
+        self.sequential(near.unwrap_or(middle), None, Effort::FULL);
         if self.best.as_ref().is_some_and(Trial::is_feasible) {
             return self.is_settled_by("slqp");
         }

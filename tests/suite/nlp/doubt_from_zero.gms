@@ -1,13 +1,13 @@
 * bmod only: all levels are 0, products of flows and shares have no slopes there, and bounds are far away: linear programs
-* prove that nothing near the start is feasible. A unit away from 0 there is a solution, also without the interior point.
+* prove that nothing near the start is feasible. From where the linear rows hold, near 1, a solution is found.
 set s 'streams' / s1*s3 /, t 'treatments' / t1*t3 /, c 'contaminants' / a, b /;
 alias (t, v);
-parameter f(s) / s1 4, s2 3, s3 1 /, limit(c) / a 2, b 1 /;
+parameter f(s) / s1 20, s2 15, s3 5 /, limit(c) / a 4000, b 2000 /;
 table load(s,c)
          a      b
-  s1     6      3
-  s2     5    1.5
-  s3     5   0.75;
+  s1 12000   6000
+  s2 10000   3000
+  s3 10000   1500;
 table rest(t,c) 'what a treatment leaves'
          a      b
   t1  0.01   1.00
@@ -30,10 +30,6 @@ masson(t,v,c)$(not sameas(t,v))..   w(t,v,c) =e= rest(t,c)*e(t,v)*m(t,c);
 massend(t,c)..  d(t,c) =e= rest(t,c)*o(t)*m(t,c);
 discharge(c)..  sum(s, load(s,c)*last(s)) + sum(t, d(t,c)) =l= limit(c);
 model water / all /;
-$onEcho > pounce.opt
-without interior_doubt
-$offEcho
-water.optFile = 1;
 solve water using nlp minimizing cost;
 *= water.modelstat 2
-*= cost.l 10.64983164983165
+*= cost.l 57.74875621890547
