@@ -181,14 +181,11 @@ impl<'a> Separator<'a> {
                 }
             }
         }
-        for (terms, side) in self
-            .sequences
-            .iter()
-            .flat_map(|s| s.separate(self, &values))
-        {
+        let sequences = self.sequences.iter();
+        for cut in sequences.flat_map(|s| s.separate(self, &values)) {
             let mut out = vec![0.0; n];
-            terms.iter().for_each(|&(j, a)| out[j] += a);
-            add(self.clean(out, side, &values));
+            cut.terms.iter().for_each(|&(j, a)| out[j] += a);
+            add(self.clean(out, cut.side, &values));
         }
         // single and aggregated rows
         for i in (0..self.mip.problem.m()).take(3000) {

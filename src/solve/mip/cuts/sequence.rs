@@ -117,8 +117,8 @@ impl Sequences {
         })
     }
 
-    /// Inequalities `Σ out · x ≤ side` that a point violates.
-    pub(super) fn separate(&self, s: &Separator, values: &[f64]) -> Vec<(Terms, f64)> {
+    /// Inequalities that a point violates.
+    pub(super) fn separate(&self, s: &Separator, values: &[f64]) -> Vec<Inequality> {
         let mut cuts = Vec::new();
         for (&a, others) in &self.others {
             let release = |j: usize| self.unit[j] * s.lower[j];
@@ -133,14 +133,14 @@ impl Sequences {
             for r in releases.into_iter().step_by(step) {
                 let some = others.iter().copied().filter(|&b| release(b) >= r);
                 let (set, times) = self.exclusive(a, some, first, values);
-                let mut sum = r;
-                let mut terms = vec![(a, -self.unit[a])];
+                let mut cut = Inequality {
+                    terms: vec![(a, -self.unit[a])],
+                    side: -r,
+                };
                 for (b, time) in set.iter().zip(times) {
-                    sum += put(first(*b), time, &mut terms, values);
+                    cut.add(first(*b), time);
                 }
-                if sum > self.unit[a] * values[a] + 1e-6 * sum.abs().max(1.0) {
-                    cuts.push((terms, -r));
-                }
+                cuts.extend(cut.violated(values));
             }
             for (c, to_last) in &self.last {
                 let Some(own) = to_last.get(&a) else { continue };
@@ -151,22 +151,15 @@ impl Sequences {
                 let wait = set.iter().map(follows).fold(*own, f64::min);
                 let rest = set.iter().zip(&times).map(|(b, t)| to_last[b] - t);
                 let fixed = wait + rest.fold(own - wait, f64::min);
-                let mut sum = fixed + self.unit[a] * values[a];
-                let mut terms = vec![(a, self.unit[a]), (*c, -self.unit[*c])];
+                let mut cut = Inequality {
+                    terms: vec![(a, self.unit[a]), (*c, -self.unit[*c])],
+                    side: -fixed,
+                };
                 for (b, time) in set.iter().zip(times) {
-                    sum += put(second(*b), time, &mut terms, values);
+                    cut.add(second(*b), time);
                 }
-                if sum > self.unit[*c] * values[*c] + 1e-6 * sum.abs().max(1.0) {
-                    cuts.push((terms, -fixed));
-                }
+                cuts.extend(cut.violated(values));
             }
-        }
-        // what stands for 1 − x has left its constant in the terms
-        for (terms, side) in &mut cuts {
-            terms.retain(|&(j, v)| {
-                *side -= if j == usize::MAX { v } else { 0.0 };
-                j != usize::MAX
-            });
         }
         cuts
     }
@@ -199,14 +192,30 @@ impl Sequences {
     }
 }
 
-/// Adds `time` where one job is before another to the terms; its value at a point.
-fn put(before: Option<&Before>, time: f64, terms: &mut Terms, values: &[f64]) -> f64 {
-    let Some(b) = before else { return 0.0 };
-    match b.is_one {
-        true => terms.push((b.column, time)),
-        false => terms.extend([(b.column, -time), (usize::MAX, time)]),
+/// `Σ terms ≤ side`.
+pub(super) struct Inequality {
+    pub(super) terms: Terms,
+    pub(super) side: f64,
+}
+
+impl Inequality {
+    /// Adds `time` on the left where one job is before another.
+    fn add(&mut self, before: Option<&Before>, time: f64) {
+        match before {
+            Some(b) if b.is_one => self.terms.push((b.column, time)),
+            Some(b) => {
+                self.terms.push((b.column, -time));
+                self.side -= time;
+            }
+            None => {}
+        }
     }
-    time * b.share(values)
+
+    /// Itself, if a point violates it.
+    fn violated(self, values: &[f64]) -> Option<Self> {
+        let sum: f64 = self.terms.iter().map(|&(j, a)| a * values[j]).sum();
+        (sum > self.side + 1e-6 * self.side.abs().max(1.0)).then_some(self)
+    }
 }
 
 /// Whether a row is the difference of two continuous columns, with a binary one or without.
