@@ -20,6 +20,7 @@ after(pair(j,k))..     s(j) =g= s(k) + p(k) - big*y(j,k);
 before(pair(j,k))..    s(k) =g= s(j) + p(j) - big*(1 - y(j,k));
 model m / all /;
 m.optCR = 0;
+option mip = bmip;
 solve m using mip minimizing cost;
 scalar few 'nodes';
 few = m.nodUsd < 1000;
