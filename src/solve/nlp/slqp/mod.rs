@@ -62,6 +62,10 @@ const FEW: usize = 10;
 const HEAVY: f64 = 1e3;
 /// A step is taken from this part of the promised decrease on.
 const TAKEN: f64 = 0.05;
+/// After so many steps that were not taken, along a curved valley say, φ may rise for a few: a step is measured from so many earlier points
+/// as well (Toint 1996).
+const REFUSALS: u32 = 6;
+const EARLIER: usize = 3;
 /// A step that keeps less than this of its promise is corrected, so many times at most.
 const KEPT: f64 = 0.5;
 const CORRECTIONS: u32 = 4;
@@ -164,6 +168,8 @@ fn solve_from(
         linear_radius: 1.0,
         budget,
         lowered: 0,
+        recent: Vec::new(),
+        refusals: 0,
         memory: Memory {
             strategies: request.strategies,
             ..Memory::default()
@@ -220,6 +226,10 @@ struct Method<'a, 'm> {
     linear_radius: f64,
     /// How often the weight was lowered.
     lowered: u32,
+    /// Objective, violation and promise of the last steps that were taken, from where they began.
+    recent: Vec<[f64; 3]>,
+    /// Steps that were not taken.
+    refusals: u32,
     memory: Memory,
     /// What a step that was refused was made of: the next is made of the same if its working set is.
     refused: Option<Refused>,
@@ -580,10 +590,22 @@ impl Method<'_, '_> {
             }
             (next, there, gain) = (other, values, corrected);
         }
+        if gain < TAKEN
+            && self.refusals >= REFUSALS
+            && let Some(v) = &there
+        {
+            let phi = phi(v, weight, &self.frame);
+            let mut sum = promised;
+            for [f, violation, p] in self.recent.iter().rev() {
+                sum += p;
+                gain = gain.max((f + weight * violation - phi) / sum);
+            }
+        }
         let length = self.at.length(&self.frame, &d);
         let first = self.at.length(&self.frame, &cauchy);
         self.resize(gain, length, first, part >= 1.0);
         if gain < TAKEN {
+            self.refusals += 1;
             self.refused = quadratic.map(|mut quadratic| {
                 quadratic.leave_all();
                 Refused {
@@ -621,6 +643,12 @@ impl Method<'_, '_> {
             self.choose(last.chain([lambda]));
             return Err(End::Solved);
         }
+        if self.recent.len() >= EARLIER {
+            self.recent.remove(0);
+        }
+        let values = &self.at.values;
+        self.recent
+            .push([values.f, self.frame.violation(&values.g), promised]);
         self.at = point;
         self.lambda = lambda;
         self.memory.factors = quadratic.and_then(|q| q.factors);
