@@ -40,11 +40,11 @@ const PROX_MIN: f64 = 1e-12;
 /// Full steps accepted in a row without a test on the merit function.
 const WATCHDOG: usize = 10;
 /// Major iterations without a notable fall of the residual before the run is called stuck.
-const STAGNATION: usize = 30;
+const STAGNATION: usize = 15;
+/// The same without any change of it: only the paths differ.
+const STILL: usize = 2;
 /// Pivots without that, at least and times n: problems without a solution have many and long paths.
 const STAGNATION_PIVOTS: (usize, usize) = (10_000, 40);
-/// The same where the residual would be accepted already.
-const STAGNATION_NEAR: usize = 4;
 /// Pivots on a path near a solution, or a share 1/10 of n.
 const NEAR_LIMIT: usize = 200;
 /// Pivots on a path from a solution to a better one, times n: a second or so where directions are full.
@@ -109,6 +109,8 @@ struct Majors {
     prox: f64,
     warm: Option<Vec<Kind>>,
     untested: usize,
+    /// Major iterations without any change of the residual.
+    still: usize,
     gradient_steps: usize,
     seed: u64,
 }
@@ -126,6 +128,7 @@ impl Majors {
             prox: run.settings.proximal_perturbation,
             warm: None,
             untested: 0,
+            still: 0,
             gradient_steps: 0,
             seed: 1,
         }
@@ -152,10 +155,8 @@ impl Majors {
             if idle == 0 {
                 pivots_then = run.pivots;
             }
-            // Good enough to accept, and no better in sight: another method may do better.
-            let acceptable = self.best.residual <= run.settings.acceptable_tolerance;
-            let long = run.pivots - pivots_then > most;
-            if idle > STAGNATION || long || acceptable && idle > STAGNATION_NEAR {
+            let stuck = idle > STAGNATION || self.still > STILL;
+            if stuck || run.pivots - pivots_then > most {
                 return Ok(());
             }
             if run.converged(self.point.residual) {
@@ -443,6 +444,11 @@ impl Majors {
             if monotone || watched {
                 let kind = if monotone { 'M' } else { 'O' };
                 log::major_line(run, &next, pivots, end, prox, kind, tries);
+                let (r, before) = (next.residual, self.point.residual);
+                self.still = match (r - before).abs() <= 1e-3 * before {
+                    true => self.still + 1,
+                    false => 0,
+                };
                 self.warm = Some(candidate.kind);
                 self.point = next;
                 if self.point.residual < self.best.residual {
