@@ -7,6 +7,10 @@ use super::tree::Search;
 /// A gap, relative to the solution, from which on it is no guide.
 const POOR: f64 = 0.1;
 
+/// A dive over nonlinear programs, which take long, decides one column and this part of all that are left at a time, and less where
+/// that leads nowhere.
+const AT_ONCE: usize = 10;
+
 /// How a dive chooses.
 #[derive(Clone, Copy, PartialEq)]
 enum Dive {
@@ -98,27 +102,39 @@ impl<R: Relaxation> Search<'_, R> {
         let spent = control.iterations;
         let mut x = x.to_vec();
         let mut failures = 0;
+        let mut part = if self.relaxation.is_linear() {
+            usize::MAX
+        } else {
+            AT_ONCE
+        };
         let budget = 5 * self.lower.len() as u64 + 2000;
         for _ in 0..2 * self.lower.len() + 10 {
             if control.stop(control.iterations).is_some() || control.iterations - spent > budget {
                 break;
             }
-            let Some(mut sides) = self.step(kind, &x, control) else {
+            let Some((sides, others)) = self.step(kind, &x, part, control) else {
                 self.offer(&x, control);
                 break;
             };
             let here = (self.lower.clone(), self.upper.clone());
             let mut done = false;
-            for _ in 0..2 {
-                let side = sides.remove(0);
-                if self.apply(&side)
+            let mut ways = vec![(&sides[0], &[][..]), (&sides[1], &[][..])];
+            if !others.is_empty() {
+                ways.insert(0, (&sides[0], &others[..]));
+            }
+            for (side, others) in ways {
+                if self.apply(side)
+                    && self.apply_fitting(others)
                     && let Solved::Value(v) = self.relaxation.solve(self.cutoff(), control)
                     && v < self.cutoff()
                 {
                     done = true;
                     break;
                 }
-                failures += 1;
+                match others {
+                    [] => failures += 1,
+                    _ => part *= 4,
+                }
                 (self.lower, self.upper) = here.clone();
                 self.send_bounds();
             }
@@ -133,18 +149,36 @@ impl<R: Relaxation> Search<'_, R> {
         self.relaxation.restart(&start);
     }
 
-    /// The two sides of a dive's next step, the preferred one first. None: the point is discrete.
-    fn step(&mut self, kind: Dive, x: &[f64], control: &mut Control) -> Option<Vec<Vec<Change>>> {
+    /// Applies those of the changes that what was applied before leaves possible. Whether nothing contradicts itself.
+    fn apply_fitting(&mut self, changes: &[Change]) -> bool {
+        changes.iter().all(|c| {
+            let (lower, upper) = (self.lower[c.column], self.upper[c.column]);
+            c.upper < lower || c.lower > upper || self.apply(&[*c])
+        })
+    }
+
+    /// The two sides of a dive's next step, the preferred one first, and what may be decided with it. None: the point is discrete.
+    fn step(
+        &mut self,
+        kind: Dive,
+        x: &[f64],
+        part: usize,
+        control: &mut Control,
+    ) -> Option<([Vec<Change>; 2], Vec<Change>)> {
         let candidates = self.candidates(x);
         if candidates.is_empty() {
-            return match self.branch_on_set(x, 0.0, 1, control)? {
+            let sides = match self.branch_on_set(x, 0.0, 1, control)? {
                 super::branching::Branch::Two {
                     sides: [a, b],
                     first,
                     ..
-                } => Some(if first == 0 { vec![a, b] } else { vec![b, a] }),
-                super::branching::Branch::Fixed(changes) => Some(vec![changes.clone(), changes]),
+                } => match first {
+                    0 => [a, b],
+                    _ => [b, a],
+                },
+                super::branching::Branch::Fixed(changes) => [changes.clone(), changes],
             };
+            return Some((sides, Vec::new()));
         }
         let guide = match (kind, &self.best) {
             (Dive::Guided, Some((_, best))) => Some(best),
@@ -179,13 +213,15 @@ impl<R: Relaxation> Search<'_, R> {
                 _ => (far, j, fraction >= 0.5),
             }
         });
-        let (_, j, up) = choice.min_by(|a, b| a.0.total_cmp(&b.0))?;
-        let [down, high] = self.sides(j, x[j]);
-        Some(if up {
-            vec![vec![high], vec![down]]
-        } else {
-            vec![vec![down], vec![high]]
-        })
+        let mut choice: Vec<(f64, usize, bool)> = choice.collect();
+        choice.sort_by(|a, b| a.0.total_cmp(&b.0));
+        choice.truncate(1 + candidates.len() / part);
+        let mut sides = choice.into_iter().map(|(_, j, up)| {
+            let [down, high] = self.sides(j, x[j]);
+            if up { [high, down] } else { [down, high] }
+        });
+        let first = sides.next()?.map(|side| vec![side]);
+        Some((first, sides.map(|[side, _]| side).collect()))
     }
 
     /// Fixes the columns on which the relaxation and the best solution agree (without one: those that are integers in the
