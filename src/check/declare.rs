@@ -279,6 +279,10 @@ impl Compiler {
                 name => self.symbols.find_set(name),
             });
             let Some(root) = known.map(|s| self.symbols.root(s)) else {
+                if group.iter().any(|n| self.is_lost(&n.name)) {
+                    group.iter().for_each(|n| self.lose(&n.name));
+                    continue;
+                }
                 let span = group[0].span.to(group[group.len() - 1].span);
                 return Diagnostic::error("E0337", span)
                     .says("none of these names is a set")

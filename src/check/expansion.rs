@@ -413,7 +413,7 @@ impl Compiler {
                         let known = self.symbols.find(to).map(|s| self.symbols.get(s));
                         let help = match known.is_some_and(|s| !s.is_set()) {
                             true => format!("labels are fixed when the text is read: `$set {to} 10` above, and `{from}*%{to}%` here"),
-                            false => "for instance `i1*i10` or `1990*2000`; other labels are listed, with commas between them".into(),
+                            false => "for instance `i1*i10` or `1990*2000`; other labels are listed, with commas between them; a comment has its `*` in the first column".into(),
                         };
                         return Diagnostic::error("E0344", *span)
                             .says(format!("`{from}*{to}` is not a range"))

@@ -148,7 +148,7 @@ impl Preprocessor<'_> {
             "modtype" => of_kind(&["model"]),
             "filtype" => of_kind(&["file"]),
             "acrtype" => of_kind(&["acronym"]),
-            "xxxtype" => of_kind(&[]),
+            "xxxtype" | "protype" => of_kind(&[]),
             "mactype" | "macro" => one(&mut |n| self.macros.contains(n)),
             "funtype" => one(&mut |n| known.is_function(n)),
             "pretype" => one(&mut |n| predefined(n).is_some()),

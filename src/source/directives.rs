@@ -577,13 +577,16 @@ impl Preprocessor<'_> {
             .help("for example `$if set x`, `$if not exist 'data.inc'`, `$if %n% == 3`, `$ifE %n% > 3`")
     }
 
-    /// What follows a true condition: a directive, a text, or nothing.
+    /// What follows a true condition, as at the begin of a line: a directive, a text, a comment, or nothing.
     fn action(&mut self, line: &Line, at: usize, known: &dyn Known) -> Outcome<()> {
         let rest = &line.text[at..];
         let start = at + rest.len() - rest.trim_start().len();
         let Some(&first) = line.text.as_bytes().get(start) else {
             return Ok(());
         };
+        if first == self.marks.comment {
+            return Ok(());
+        }
         if first == self.marks.dollar {
             if self.conditions_on_line >= 50 {
                 let (lo, hi) = line.origin(0, line.text.len());

@@ -124,8 +124,8 @@ pub(super) fn explain(
             // What ends the block in another language is the same mistake.
             found.language = Language::Blocks;
         }
-        if found.code() == "E0230" {
-            // A comment mark of another language spoils its line.
+        if found.code() == "E0230" && !f.raw.class.declares() {
+            // A comment mark of another language spoils its line, and all of a declaration.
             found.go_on = foreign::line_end(&f, f.at);
         }
         return found;

@@ -215,9 +215,18 @@ fn said(diagnostic: Diagnostic, language: Language) -> Explanation {
     }
 }
 
+/// A comment mark of another language, or `*` within a line.
+pub(super) fn no_comment(f: &Failure<'_>, at: usize, mark: &str) -> Diagnostic {
+    const HELP: &str = "a comment is a line with `*` in its first column; in a `.blk` file also `//` to the end of the line; `$onEolCom` allows `!!`";
+    let message = match mark {
+        "*" => "`*` begins a comment only in the first column".to_owned(),
+        _ => format!("`{mark}` does not begin a comment here"),
+    };
+    f.error("E0230", at, mark.len()).says(message).help(HELP)
+}
+
 /// Comment marks of other languages: their line is spoiled.
 fn comment(f: &Failure<'_>, text: &str, lead: usize) -> Option<Explanation> {
-    const HELP: &str = "a comment is a line with `*` in its first column; in a `.blk` file also `//` to the end of the line; `$onEolCom` allows `!!`";
     let mark = ["#=", "#", "//", "/*", "--", "%%", "%", "!", "\"\"\"", "*"];
     let mark = mark.into_iter().find(|m| text.starts_with(m))?;
     let name = text[1..].split_once('%').filter(|_| mark == "%");
@@ -225,11 +234,7 @@ fn comment(f: &Failure<'_>, text: &str, lead: usize) -> Option<Explanation> {
         // `%name%` without a value.
         return None;
     }
-    let message = match mark {
-        "*" => "`*` begins a comment only in the first column".to_owned(),
-        _ => format!("`{mark}` does not begin a comment here"),
-    };
-    let mut found = Explanation::of(f.error("E0230", lead, mark.len()).says(message).help(HELP));
+    let mut found = Explanation::of(no_comment(f, lead, mark));
     let lo = f.span(lead, lead + mark.len()).lo as usize;
     let closing = match mark {
         "/*" => "*/",

@@ -3,6 +3,7 @@
 //! Only statements that did not parse come here, so nothing legal is refused.
 
 use super::explain::{Failure, closes_early, closing, is_relation};
+use super::foreign::no_comment;
 use super::neighbours::{is_sum, top_level};
 use super::words::{self, Class};
 use crate::diag::Diagnostic;
@@ -187,19 +188,22 @@ fn sign(f: &Failure<'_>) -> Option<Diagnostic> {
         "%" if !behind.contains('%') => {
             let next = behind.trim_start().chars().next();
             let ends = next.is_none_or(|c| !c.is_ascii_alphanumeric() && c != '(');
-            say("%", match before.ends_with(|c: char| c.is_ascii_digit()) && ends {
-                true => "write 5 percent as `0.05`",
-                false => "write `mod(x, y)` for the remainder; a comment is a line with `*` in its first column",
-            })
+            say(
+                "%",
+                match before.ends_with(|c: char| c.is_ascii_digit()) && ends {
+                    true => "write 5 percent as `0.05`",
+                    false => {
+                        "write `mod(x, y)` for the remainder; a comment is a line with `*` in its first column"
+                    }
+                },
+            )
         }
         sign if arithmetic && behind.starts_with('=') => {
             let help = format!("write the left side again: `a = a {sign} b`");
             say(&f.text[f.at..f.at + 2], &help)
         }
-        "#" => f
-            .error("E0230", f.at, 1)
-            .says("`#` does not begin a comment")
-            .help("a comment is a line with `*` in its first column; in a `.blk` file also `//`; `$onEolCom` allows `!!` to the end of the line"),
+        mark @ "*" if f.raw.class.declares() => no_comment(f, f.at, mark),
+        mark @ "#" => no_comment(f, f.at, mark),
         ":" if f.raw.class == Class::Algebra => f
             .error("E0221", f.at, 1)
             .says("`:` does not begin an equation")

@@ -25,7 +25,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Of a column that is this near to 0 its switch says nothing.
 const OFF: f64 = 1e-6;
 
-/// Columns of a form without a switch, at most.
+/// Columns of a form without a switch, or sums of them, at most.
 const MAX_COLUMNS: usize = 3;
 
 /// Forms that are not quadratic, at most: each has an evaluator of its own.
@@ -67,8 +67,8 @@ pub(in crate::solve) struct Form {
     switch: Option<u32>,
     /// x is one integer column.
     whole: bool,
-    /// It depends on its columns by one affine expression.
-    single: bool,
+    /// How many affine expressions it depends on its columns by, at most.
+    sums: usize,
     /// Values of its columns where it has a tangent.
     inside: Option<Vec<f64>>,
 }
@@ -159,7 +159,7 @@ impl Form {
             column: column as u32,
             switch: at_zero.and_then(|_| common_switch(switches, &columns)),
             whole: is_whole(instance, &columns),
-            single: term.is_of_one_sum(),
+            sums: term.sums(),
             columns,
             function,
             at_zero: at_zero.unwrap_or(0.0),
@@ -183,7 +183,7 @@ impl Form {
 
     /// Whether few tangents say what it is: of a form of many columns the nonlinear solver knows more.
     pub(in crate::solve) fn is_small(&self) -> bool {
-        self.single || self.columns.len() <= MAX_COLUMNS || self.switch.is_some()
+        self.sums.min(self.columns.len()) <= MAX_COLUMNS || self.switch.is_some()
     }
 
     fn own(&self, x: &[f64]) -> Vec<f64> {
@@ -317,8 +317,10 @@ impl Split {
                 if forms.len() == MAX_OTHERS {
                     return None;
                 }
-                let column = builder.columns.push(f64::NEG_INFINITY, f64::INFINITY);
-                let form = Form::new(instance, column, &term, direction[row] * weight, switches);
+                let weight = direction[row] * weight;
+                let least = known.times(weight).range.low;
+                let column = builder.columns.push(least, f64::INFINITY);
+                let form = Form::new(instance, column, &term, weight, switches);
                 form.put(row, direction[row], &mut builder, &mut forms);
             }
         }
@@ -395,7 +397,7 @@ fn with_squares(
                 column: column as u32,
                 switch: common_switch(switches, &columns),
                 whole: is_whole(instance, &columns),
-                single: false,
+                sums: columns.len(),
                 columns,
                 function: Function::Quadratic(entries),
                 at_zero: 0.0,

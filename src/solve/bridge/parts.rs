@@ -80,10 +80,10 @@ impl Term {
         }
     }
 
-    /// Whether it depends on its columns by one affine expression.
-    pub(super) fn is_of_one_sum(&self) -> bool {
+    /// How many affine expressions it depends on its columns by.
+    pub(super) fn sums(&self) -> usize {
         let leaf = |op: &&Op| matches!(op, Op::Var(_) | Op::Affine(..));
-        self.ops.iter().filter(leaf).count() == 1
+        self.ops.iter().filter(leaf).count()
     }
 
     /// Whether a function with kinks stands anywhere in it.

@@ -22,6 +22,8 @@ pub struct Composed {
     pub concave: bool,
     /// 0 of a number, 1 of an affine expression, 2 of a quadratic one, 3 of any other.
     pub degree: u8,
+    /// It is a sum of squares of affine expressions: its root is a norm.
+    squares: bool,
 }
 
 impl Composed {
@@ -31,6 +33,7 @@ impl Composed {
             convex: true,
             concave: true,
             degree,
+            squares: degree == 0 && range.low >= 0.0,
         }
     }
 
@@ -40,6 +43,7 @@ impl Composed {
             convex: false,
             concave: false,
             degree,
+            squares: false,
         }
     }
 
@@ -63,6 +67,7 @@ impl Composed {
             range,
             convex,
             concave,
+            squares: self.squares && factor >= 0.0,
             ..self
         }
     }
@@ -73,6 +78,17 @@ impl Composed {
             convex: self.convex && other.convex,
             concave: self.concave && other.concave,
             degree: self.degree.max(other.degree),
+            squares: self.squares && other.squares,
+        }
+    }
+
+    /// The square of an affine expression.
+    fn square(self) -> Self {
+        Self {
+            convex: true,
+            degree: 2,
+            squares: true,
+            ..self
         }
     }
 
@@ -86,6 +102,7 @@ impl Composed {
             convex: of(f.convex, self.convex, self.concave),
             concave: of(f.concave, self.concave, self.convex),
             degree,
+            squares: degree == 2,
         }
     }
 }
@@ -209,6 +226,7 @@ pub fn composed(term: &Term, columns: &Columns) -> Composed {
             },
             (Op::Power | Op::Call(Function::RPower | Function::VcPower, _), [(a, _), (p, _)]) => {
                 match p.number() {
+                    Some(0.5) if a.squares => norm(other),
                     Some(p) => {
                         let power = operation(Op::Power, &ranges, at, constants);
                         let squared = if p == 2.0 && a.is_affine() { 2 } else { degree };
@@ -216,6 +234,10 @@ pub fn composed(term: &Term, columns: &Columns) -> Composed {
                     }
                     None => other,
                 }
+            }
+            (Op::Call(Function::Sqrt, _), [(a, _)]) if a.squares => norm(other),
+            (Op::Call(Function::EDist, _), all) if all.iter().all(|a| a.0.is_affine()) => {
+                norm(other)
             }
             (Op::Call(f, _), [(a, _)]) => {
                 let graph = match f {
@@ -234,6 +256,14 @@ pub fn composed(term: &Term, columns: &Columns) -> Composed {
     }
     let none = Composed::unknown(3, Interval::ALL);
     stack.pop().map_or(none, |v| v.0)
+}
+
+/// A norm of affine expressions.
+fn norm(other: Composed) -> Composed {
+    Composed {
+        convex: true,
+        ..other
+    }
 }
 
 /// a to a whole power.
@@ -261,6 +291,9 @@ fn product(factors: &[(Composed, usize)], term: &Term, place: usize, other: Comp
                 }
                 _ => false,
             };
+            if affine(first) && is_same(term, text(first), text(second)) {
+                return other.square().times(number);
+            }
             let known = Composed {
                 convex: is_log_of(second, first) || is_log_of(first, second),
                 degree: if affine(first) && affine(second) {
@@ -335,6 +368,22 @@ mod tests {
                     [y.clone().powi(2) - 1.0, Term::constant(1.5)],
                 ),
                 "neither",
+            ),
+            (
+                call(
+                    Function::Sqrt,
+                    &(1.0 + 2.0 * y.clone().powi(2) + (x.clone() - y.clone()).powi(2)),
+                ),
+                "convex",
+            ),
+            (
+                call(Function::Sqrt, &(y.clone() * y.clone() + z.clone().powi(2))),
+                "convex",
+            ),
+            (call(Function::Sqrt, &(y.clone().powi(2) - 1.0)), "neither"),
+            (
+                Term::call(Function::EDist, [x.clone(), y.clone()]),
+                "convex",
             ),
             (call(Function::Sin, &x), "neither"),
             (two * (3.0 - x), "affine"),
