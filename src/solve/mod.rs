@@ -10,7 +10,7 @@ pub mod budget;
 pub mod certificate;
 pub mod complementarity;
 #[cfg(test)]
-pub mod conformance;
+pub(crate) mod dense;
 pub mod discrete;
 pub(crate) mod factor_size;
 #[cfg(feature = "highs")]

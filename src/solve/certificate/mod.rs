@@ -539,7 +539,7 @@ pub fn is_beyond_bounds(instance: &Instance) -> bool {
 mod tests {
     use super::*;
     use crate::model::outcome::SolverStatus;
-    use crate::solve::conformance::linear as program;
+    use crate::solve::dense::linear as program;
 
     fn outcome(level: &[f64], row_marginal: &[f64], claim: Claim, ray: &[f64]) -> Outcome {
         Outcome {
@@ -681,7 +681,7 @@ mod tests {
             ..Instance::default()
         };
         let inf = f64::INFINITY;
-        instance.columns = crate::solve::conformance::columns(&[(0., inf), (0., inf), (-inf, inf)]);
+        instance.columns = crate::solve::dense::columns(&[(0., inf), (0., inf), (-inf, inf)]);
         instance.rows.relation = vec![Relation::Greater, Relation::Greater, Relation::Equal];
         instance.rows.rhs = vec![2.0, -1.0, 1.0];
         let at = |x: &[f64]| {

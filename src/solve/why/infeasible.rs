@@ -235,7 +235,8 @@ mod tests {
     use crate::model::problem_type::ProblemType;
     use crate::solve::answer::subproblem;
     use crate::solve::backend::Task;
-    use crate::solve::conformance::{Quiet, linear};
+    use crate::solve::Quiet;
+    use crate::solve::dense::linear;
     use crate::solve::{Claim, Settings};
 
     /// Whether the members alone can be satisfied, asked of the whole solver.

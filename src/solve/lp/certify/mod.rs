@@ -431,7 +431,7 @@ mod tests {
     use crate::model::problem_type::ProblemType;
     use crate::solve::Settings;
     use crate::solve::backend::{Backend, Task};
-    use crate::solve::conformance;
+    use crate::solve::dense;
     use crate::solve::lp::Clarabel;
 
     fn proof(instance: &Instance) -> Proof {
@@ -452,7 +452,7 @@ mod tests {
             (Sense::Minimize, [-3., -2.], -28.0),
         ] {
             let rows = [(vec![1., 1.], Relation::Less, 10.)];
-            let instance = conformance::linear(sense, &cost, &[(0., 8.), (0., INF)], &rows);
+            let instance = dense::linear(sense, &cost, &[(0., 8.), (0., INF)], &rows);
             let p = proof(&instance);
             assert_eq!((p.low, p.high), (value, value));
         }
@@ -466,7 +466,7 @@ mod tests {
             (vec![0.1, 0.3], Relation::Less, 0.1),
         ];
         let bounds = [(0., INF), (0., INF)];
-        let instance = conformance::linear(Sense::Maximize, &[1., 1.], &bounds, &rows);
+        let instance = dense::linear(Sense::Maximize, &[1., 1.], &bounds, &rows);
         let p = proof(&instance);
         assert!(p.low <= p.high && p.high - p.low < 1e-15 && (p.low - 0.5).abs() < 1e-15);
     }
@@ -475,7 +475,7 @@ mod tests {
     fn without_a_solution_there_is_no_interval() {
         let rows = [(vec![1., 1.], Relation::Greater, 30.)];
         let bounds = [(0., 8.), (0., 8.)];
-        let p = proof(&conformance::linear(
+        let p = proof(&dense::linear(
             Sense::Minimize,
             &[1., 1.],
             &bounds,
@@ -485,7 +485,7 @@ mod tests {
         assert!(p.no_high.is_some());
         let rows = [(vec![1., -1.], Relation::Less, 3.)];
         let bounds = [(0., INF), (0., INF)];
-        let p = proof(&conformance::linear(
+        let p = proof(&dense::linear(
             Sense::Maximize,
             &[1., 1.],
             &bounds,

@@ -13,8 +13,6 @@
 mod columns;
 mod restore;
 mod rows;
-#[cfg(test)]
-mod tests;
 
 use super::form::{Activity, Problem, Sparse, term};
 use super::simplex::State;

@@ -1,6 +1,6 @@
 use super::*;
 use crate::model::instance::{Relation, Sense};
-use crate::solve::conformance;
+use crate::solve::dense;
 use crate::solve::lp::form::Form;
 
 fn never(_: u64) -> Option<Ended> {
@@ -9,7 +9,7 @@ fn never(_: u64) -> Option<Ended> {
 
 #[test]
 fn solves_and_restarts() {
-    let instance = conformance::linear(
+    let instance = dense::linear(
         Sense::Maximize,
         &[3., 2.],
         &[(0., 8.), (0., f64::INFINITY)],

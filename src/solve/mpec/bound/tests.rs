@@ -7,8 +7,8 @@ use crate::model::instance::{INF, Instance, Relation, Sense};
 use crate::model::problem_type::ProblemType;
 use crate::solve::answer::{Answer, subproblem};
 use crate::solve::backend::Task;
-use crate::solve::conformance::{self, Quiet, Row};
-use crate::solve::{Budget, ModelStatus, Settings};
+use crate::solve::dense::{self, Row};
+use crate::solve::{Budget, ModelStatus, Quiet, Settings};
 
 /// Small whole numbers from a fixed seed.
 struct Dice(u64);
@@ -145,7 +145,7 @@ fn joined(dice: &mut Dice) -> Instance {
         false => Sense::Maximize,
     };
     let cost = dice.line(n, -3, 3);
-    let mut instance = conformance::linear(sense, &cost, &bounds, &rows);
+    let mut instance = dense::linear(sense, &cost, &bounds, &rows);
     let matched = |j: usize| (j < pairs).then_some(j as u32);
     instance.matched = Some((0..=n).map(matched).collect());
     instance
@@ -177,7 +177,7 @@ fn apart(dice: &mut Dice) -> Instance {
     }
     let mut cost = dice.line(n, -3, 3);
     cost.resize(width, 0.0);
-    let mut instance = conformance::linear(Sense::Minimize, &cost, &bounds, &rows);
+    let mut instance = dense::linear(Sense::Minimize, &cost, &bounds, &rows);
     let matched = |j: usize| (j >= n && j < width).then(|| (j - n) as u32);
     instance.matched = Some((0..=width).map(matched).collect());
     instance
