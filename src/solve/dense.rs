@@ -16,7 +16,10 @@ pub(crate) fn linear(sense: Sense, cost: &[f64], bounds: &[(f64, f64)], rows: &[
     let z = instance.add_column(-INF, INF, 0.0);
     instance.set_objective(z, sense);
     let definition: Vec<f64> = cost.iter().map(|&c| -c).chain([1.0]).collect();
-    let all = rows.iter().cloned().chain([(definition, Relation::Equal, 0.0)]);
+    let all = rows
+        .iter()
+        .cloned()
+        .chain([(definition, Relation::Equal, 0.0)]);
     for (coefficients, relation, rhs) in all {
         push_row(&mut instance, &coefficients, relation, rhs);
     }

@@ -91,10 +91,19 @@ pub struct SolveError {
 impl SolveError {
     /// With no row or column to blame.
     pub fn new(message: impl Into<String>) -> Self {
+        Self::at(None, None, message)
+    }
+
+    /// With the row, the column or both to blame.
+    pub(crate) fn at(
+        row: Option<usize>,
+        column: Option<usize>,
+        message: impl Into<String>,
+    ) -> Self {
         Self {
             message: message.into(),
-            row: None,
-            column: None,
+            row,
+            column,
         }
     }
 }

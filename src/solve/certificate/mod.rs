@@ -195,6 +195,16 @@ fn relative(violation: f64, size: f64) -> f64 {
     }
 }
 
+/// By how much a multiplier has the sign that a row excludes, for a minimum; not above 0 where it has the other.
+fn wrong_sign(relation: Relation, multiplier: f64) -> f64 {
+    match relation {
+        Relation::Equal => 0.0,
+        Relation::Greater => -multiplier,
+        Relation::Less => multiplier,
+        Relation::Free => multiplier.abs(),
+    }
+}
+
 /// Violation of a row.
 pub fn row_violation(relation: Relation, activity: f64, rhs: f64) -> f64 {
     match relation {
@@ -265,12 +275,7 @@ pub fn residuals(instance: &Instance, outcome: &Outcome, at: &Linearised) -> Res
     for i in 0..instance.row_count() {
         let m = outcome.row_marginal[i];
         let rhs = instance.rows.rhs[i];
-        let wrong = match instance.rows.relation[i] {
-            Relation::Equal => 0.0,
-            Relation::Greater => (-sigma * m).max(0.0),
-            Relation::Less => (sigma * m).max(0.0),
-            Relation::Free => m.abs(),
-        };
+        let wrong = wrong_sign(instance.rows.relation[i], sigma * m).max(0.0);
         dual_row.see(wrong, i);
         dual_relative = dual_relative.max(relative(wrong, unit));
         let slack = match instance.rows.relation[i] {
@@ -411,12 +416,7 @@ pub fn proves_infeasible(instance: &Instance, y: &[f64]) -> bool {
     let (mut margin, mut size) = (Sum::default(), 0.0f64);
     let unit = largest(y);
     for (i, &y) in y.iter().enumerate() {
-        let wrong = match instance.rows.relation[i] {
-            Relation::Equal => 0.0,
-            Relation::Greater => -y,
-            Relation::Less => y,
-            Relation::Free => y.abs(),
-        };
+        let wrong = wrong_sign(instance.rows.relation[i], y);
         if wrong > 1e-9 * unit {
             return false;
         }

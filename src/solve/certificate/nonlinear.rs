@@ -17,7 +17,7 @@
 //! The primal residuals are those of [`super`], with |∂a_i/∂x_j · x_j| as the size of an
 //! entry.
 
-use super::{Linearised, Residuals, TOLERANCE, primal, row_violation, units};
+use super::{Linearised, Residuals, TOLERANCE, primal, row_violation, units, wrong_sign};
 use crate::autodiff::{ErrorKind, EvalFailure, Evaluator, kinks};
 use crate::model::instance::{Instance, Relation};
 use crate::model::sum::Sum;
@@ -370,12 +370,7 @@ pub fn is_locally_infeasible(
     let mut margin = Sum::default();
     let largest = y.iter().fold(0.0f64, |s, v| s.max(v.abs()));
     for i in 0..m {
-        let wrong = match instance.rows.relation[i] {
-            Relation::Equal => 0.0,
-            Relation::Greater => -y[i],
-            Relation::Less => y[i],
-            Relation::Free => y[i].abs(),
-        };
+        let wrong = wrong_sign(instance.rows.relation[i], y[i]);
         if wrong > 1e-6 * largest || y[i].is_nan() {
             return false;
         }

@@ -105,25 +105,18 @@ struct Program {
 impl Program {
     fn new(p: &Problem) -> (Self, Vec<usize>) {
         let kept: Vec<usize> = (0..p.n()).filter(|&j| p.lower[j] < p.upper[j]).collect();
-        let mut number = vec![usize::MAX; p.n()];
-        kept.iter().enumerate().for_each(|(k, &j)| number[j] = k);
+        let all: Vec<usize> = (0..p.m()).collect();
+        let part = p.part(&kept, &all, &p.lower);
         let (n, m) = (kept.len(), p.m());
-        let mut rows = Sparse::new();
-        let mut cost: Vec<f64> = kept.iter().map(|&j| p.cost[j]).collect();
+        let mut cost = part.cost;
         cost.resize(n + m, 0.0);
-        let mut limits: Vec<[f64; 2]> = kept.iter().map(|&j| [p.lower[j], p.upper[j]]).collect();
-        for i in 0..m {
-            let fixed = p.rows.line(i).filter(|e| number[e.0] == usize::MAX);
-            let moved: f64 = fixed.map(|(j, a)| a * p.lower[j]).sum();
-            limits.push([p.row_lower[i] - moved, p.row_upper[i] - moved]);
-            let kept = p.rows.line(i).filter(|e| number[e.0] != usize::MAX);
-            rows.push(kept.map(|(j, a)| (number[j], a)));
-        }
+        let columns = part.lower.iter().zip(&part.upper);
+        let limits = columns.chain(part.row_lower.iter().zip(&part.row_upper));
         let mut out = Self {
             n,
             m,
-            columns: rows.transpose(n),
-            rows,
+            columns: part.columns,
+            rows: part.rows,
             cost,
             value: Vec::with_capacity(n + m),
             of: Vec::new(),
@@ -131,7 +124,7 @@ impl Program {
             side: Vec::new(),
             constant: Vec::with_capacity(n + m),
         };
-        for (k, &[l, u]) in limits.iter().enumerate() {
+        for (k, (&l, &u)) in limits.enumerate() {
             out.value.push(0.0f64.max(l).min(u));
             out.constant.push(l == u);
             for (side, sign) in [(l, 1.0), (u, -1.0)] {

@@ -225,7 +225,7 @@ mod tests {
     /// Geometric means would make an entry count that changes nothing.
     #[test]
     fn what_changes_nothing_in_a_step_stays_small() {
-        let mut rows = Sparse::new();
+        let mut rows = Sparse::default();
         rows.push([(0, 1e3), (1, 1e-20)]);
         rows.push([(1, 5.0), (2, 1.0)]);
         let problem = Problem {

@@ -374,7 +374,7 @@ impl<'a> Path<'a> {
             }
             Event::Flip(_) | Event::Ray => return Ok(PathEnd::Ray),
         };
-        let (mut direction, mut doubts) = (Sparse::new(), 0);
+        let (mut direction, mut doubts) = (Sparse::default(), 0);
         loop {
             run.pivots += 1;
             self.pivots += 1;
@@ -390,7 +390,7 @@ impl<'a> Path<'a> {
             if self.moved == 0 {
                 return Ok(PathEnd::Loop);
             }
-            let column = self.problem.column(entering);
+            let column: Sparse = self.problem.column(entering).collect();
             leaving = loop {
                 let old = self.basis.as_ref().is_none_or(Basis::is_old);
                 if old && !self.refactor(run) {
@@ -403,10 +403,8 @@ impl<'a> Path<'a> {
                     return Ok(PathEnd::Numerical);
                 }
                 let fresh = basis.updates() == 0;
-                let at_hole = direction
-                    .iter()
-                    .find(|(s, _)| *s == hole)
-                    .map_or(0.0, |d| d.1);
+                let at = |slot: usize| direction.iter().find(|d| d.0 == slot).map_or(0.0, |d| d.1);
+                let at_hole = at(hole);
                 let event = self.event(&direction, sign, hole, at_hole, entering);
                 match event {
                     Event::Ray => return Ok(PathEnd::Ray),
@@ -420,10 +418,7 @@ impl<'a> Path<'a> {
                         break (entering, sign > 0.0);
                     }
                     Event::Leave { slot, upper, step } => {
-                        let at_slot = direction
-                            .iter()
-                            .find(|(s, _)| *s == slot)
-                            .map_or(0.0, |d| d.1);
+                        let at_slot = at(slot);
                         let pivot = at_slot.abs().max(at_hole.abs());
                         if pivot < PIVOT_DOUBTFUL && !fresh {
                             doubts += 1;

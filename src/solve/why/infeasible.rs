@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 use super::Finding;
 use crate::model::instance::Instance;
 use crate::solve::Budget;
-use crate::solve::lp::form::{Form, Problem, Sparse};
+use crate::solve::lp::form::{Form, Problem};
 use crate::solve::lp::scale::Scaling;
 use crate::solve::lp::simplex::Simplex;
 use crate::solve::lp::{Ended, watch};
@@ -172,10 +172,7 @@ fn test(p: &Problem, set: &BTreeSet<Member>, budget: &Budget) -> Tested {
             _ => None,
         })
         .collect();
-    let mut sub = Problem {
-        rows: Sparse::new(),
-        ..Problem::default()
-    };
+    let mut sub = Problem::default();
     let mut see = |j: usize, columns: &mut Vec<usize>| {
         if number[j] == usize::MAX {
             number[j] = columns.len();
@@ -233,9 +230,9 @@ mod tests {
     use super::*;
     use crate::model::instance::{Relation, Sense};
     use crate::model::problem_type::ProblemType;
+    use crate::solve::Quiet;
     use crate::solve::answer::subproblem;
     use crate::solve::backend::Task;
-    use crate::solve::Quiet;
     use crate::solve::dense::linear;
     use crate::solve::{Claim, Settings};
 

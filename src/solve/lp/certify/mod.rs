@@ -45,6 +45,17 @@ pub struct Unproved {
     pub column: Option<usize>,
 }
 
+impl Unproved {
+    /// Without a row or column to name.
+    pub(in crate::solve) fn new(why: &'static str) -> Self {
+        Self {
+            why,
+            row: None,
+            column: None,
+        }
+    }
+}
+
 /// What could be proved about the optimal value of an instance: it is not below `low` and not above
 /// `high`.
 #[derive(Clone, Debug, PartialEq)]
@@ -119,14 +130,10 @@ pub(super) fn certify_by(
     let form = Form::exact(instance)?;
     let scaling = Scaling::new(&form.problem);
     let p = scaling.apply(&form.problem);
-    let why = |why| Unproved {
-        why,
-        row: None,
-        column: None,
-    };
-    let (mut upper, mut lower) = (Err(why("")), Err(why("")));
+    let (mut upper, mut lower) = (Err(Unproved::new("")), Err(Unproved::new("")));
     if !scaling.is_exact(&form.problem, &p) {
-        let extreme = why("the coefficients are so extreme that they cannot be scaled exactly");
+        let extreme =
+            Unproved::new("the coefficients are so extreme that they cannot be scaled exactly");
         (upper, lower) = (Err(extreme.clone()), Err(extreme));
     } else {
         let small = p.m() + p.n() <= MAX_EXACT_SIZE;
@@ -475,22 +482,12 @@ mod tests {
     fn without_a_solution_there_is_no_interval() {
         let rows = [(vec![1., 1.], Relation::Greater, 30.)];
         let bounds = [(0., 8.), (0., 8.)];
-        let p = proof(&dense::linear(
-            Sense::Minimize,
-            &[1., 1.],
-            &bounds,
-            &rows,
-        ));
+        let p = proof(&dense::linear(Sense::Minimize, &[1., 1.], &bounds, &rows));
         assert_eq!(p.high, INF);
         assert!(p.no_high.is_some());
         let rows = [(vec![1., -1.], Relation::Less, 3.)];
         let bounds = [(0., INF), (0., INF)];
-        let p = proof(&dense::linear(
-            Sense::Maximize,
-            &[1., 1.],
-            &bounds,
-            &rows,
-        ));
+        let p = proof(&dense::linear(Sense::Maximize, &[1., 1.], &bounds, &rows));
         assert_eq!(p.high, INF);
         assert!(p.no_high.is_some());
     }
