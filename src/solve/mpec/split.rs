@@ -171,8 +171,7 @@ pub fn sides(program: &Program) -> Option<Vec<bool>> {
     for i in 0..m {
         for (j, _) in instance.matrix.row(i) {
             if instance.columns.lower[j] < instance.columns.upper[j] {
-                let (a, b) = (root(&mut parent, j), root(&mut parent, n + i));
-                parent[a] = b;
+                join(&mut parent, j, n + i);
             }
         }
     }
@@ -205,6 +204,12 @@ pub fn sides(program: &Program) -> Option<Vec<bool>> {
     }
     let on_a = |k: usize| side[root(&mut parent, k)] == Some(true);
     Some((0..n + m).map(on_a).collect())
+}
+
+/// Unites the sets of two members.
+pub(super) fn join(parent: &mut [usize], a: usize, b: usize) {
+    let (a, b) = (root(parent, a), root(parent, b));
+    parent[a] = b;
 }
 
 /// The representative of k's set in a union of disjoint sets.

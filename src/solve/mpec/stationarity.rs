@@ -19,7 +19,7 @@
 //! above 0. Ten pairs that do not meet then cost ten times three nodes, not 2¹⁰.
 
 use super::pairs::{Pair, Piece, Program};
-use super::split::root;
+use super::split::{join, root};
 use super::tree::{Limits, Lpcc};
 use crate::autodiff::Evaluator;
 use crate::model::instance::Relation;
@@ -164,15 +164,13 @@ impl Part {
         pairs.iter().for_each(|p| active[p.row] = true);
         defined.iter().for_each(|z| active[z.row] = false);
         let mut parent: Vec<usize> = (0..n + m).collect();
-        let mut join = |a: usize, b: usize| {
-            let (a, b) = (root(&mut parent, a), root(&mut parent, b));
-            parent[a] = b;
-        };
         for i in (0..m).filter(|&i| active[i]) {
             let moving = problem.rows.line(i).filter(|e| !leaves(e.0));
-            moving.for_each(|(j, _)| join(j, n + i));
+            moving.for_each(|(j, _)| join(&mut parent, j, n + i));
         }
-        pairs.iter().for_each(|p| join(p.column, n + p.row));
+        pairs
+            .iter()
+            .for_each(|p| join(&mut parent, p.column, n + p.row));
         let mut number = vec![usize::MAX; n + m];
         let mut parts: Vec<(Vec<usize>, Vec<usize>)> = Vec::new();
         for j in (0..n).filter(|&j| problem.cost[j] != 0.0 && !leaves(j)) {

@@ -104,7 +104,7 @@ impl Products<'_, '_> {
         let Some(sides) = Sides::new(program, cutoff) else {
             return none;
         };
-        let mut first = sides.first(program);
+        let mut first = sides.first();
         let known = sides.pick(true, level);
         let derived = self.watched(|stop| weak::derive(&mut first, cutoff, &known, stop));
         self.budget.spend(derived);

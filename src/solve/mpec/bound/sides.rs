@@ -11,7 +11,7 @@
 use std::collections::{BTreeMap, HashMap};
 
 use super::super::pairs::Program;
-use super::super::split::{sides, whole};
+use super::super::split::sides;
 use crate::model::instance::{INFINITE, Relation};
 use crate::solve::lp::form::Problem;
 
@@ -189,8 +189,6 @@ pub(super) struct Sides {
     /// The other one.
     pub b: Half,
     columns: [Vec<usize>; 2],
-    /// Of side A.
-    rows: Vec<usize>,
     /// The objective's column on side A.
     target: usize,
     /// Of the objective: 1 if it is minimised, else −1.
@@ -228,18 +226,31 @@ impl Sides {
             a,
             b,
             columns: [true, false].map(|which| (0..count).filter(|&j| on_a[j] == which).collect()),
-            rows: (0..on_a.len() - count)
-                .filter(|i| on_a[count + i])
-                .collect(),
             target: place_a[objective],
             sign: program.sign(),
         })
     }
 
     /// The program of side A alone.
-    pub(super) fn first(&self, program: &Program) -> Problem {
-        let whole = whole(program);
-        whole.part(&self.columns[0], &self.rows, &whole.lower)
+    pub(super) fn first(&self) -> Problem {
+        let a = &self.a;
+        let mut p = Problem {
+            cost: vec![0.0; a.count],
+            lower: vec![f64::NEG_INFINITY; a.count],
+            upper: vec![f64::INFINITY; a.count],
+            ..Problem::default()
+        };
+        p.cost[self.target] = self.sign;
+        let equations = a.equations.iter().map(|f| (f, 0.0));
+        let inequalities = a.inequalities.iter().map(|f| (f, f64::INFINITY));
+        let inequalities = inequalities.filter(|i| !i.0.terms.is_empty());
+        for (f, room) in equations.chain(inequalities) {
+            p.rows.push(f.terms.iter().copied());
+            p.row_lower.push(-f.constant);
+            p.row_upper.push(room - f.constant);
+        }
+        p.columns = p.rows.transpose(a.count);
+        p
     }
 
     /// Columns of the program that are on side A, or on B.
