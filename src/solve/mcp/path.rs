@@ -112,44 +112,11 @@ enum Event {
     Ray,
 }
 
-/// Paths made from the end of one that lost its accuracy.
-const REPAIRS: u64 = 3;
-
 /// Follows the path. Pivots and factorisations are counted in `run`; `seed` feeds the shifts.
 ///
 /// "Solved" is checked: rounding errors, absorbed on the way, may leave a final basis whose exact
-/// solution violates bounds. Then, and when the basis became singular to rounding, a new path is
-/// started from the last state, which is close to the solution.
+/// solution violates bounds.
 pub(super) fn follow(
-    run: &mut Run,
-    problem: &LinearProblem,
-    start: &Start,
-    limit: usize,
-    seed: u64,
-) -> Result<PathResult, Stop> {
-    let mut result = follow_once(run, problem, start, limit, seed)?;
-    for repair in 1..=REPAIRS {
-        if result.end != PathEnd::Numerical || result.pivots == 0 || result.pivots >= limit {
-            break;
-        }
-        let again = Start {
-            kind: result.kind.clone(),
-            x: result.x.clone(),
-            cover: false,
-            tolerance: start.tolerance,
-        };
-        let left = limit - result.pivots;
-        let next = follow_once(run, problem, &again, left, seed + (repair << 32))?;
-        let pivots = result.pivots + next.pivots;
-        if next.end == PathEnd::Singular {
-            break;
-        }
-        result = PathResult { pivots, ..next };
-    }
-    Ok(result)
-}
-
-fn follow_once(
     run: &mut Run,
     problem: &LinearProblem,
     start: &Start,
