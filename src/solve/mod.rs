@@ -29,6 +29,7 @@ pub mod registry;
 pub mod strategy;
 pub mod structure;
 pub mod study;
+mod vector;
 pub mod why;
 
 pub use budget::{Budget, Limits, Monitor, Progress, Quiet, Stop};

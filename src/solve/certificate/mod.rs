@@ -28,6 +28,7 @@ pub mod nonlinear;
 use crate::model::instance::{INFINITE, Instance, Relation, Sense};
 use crate::model::outcome::{Claim, ModelStatus, Outcome};
 use crate::model::sum::Sum;
+use crate::solve::vector::largest;
 
 /// Relative tolerance for primal and dual residuals and the gap.
 pub const TOLERANCE: f64 = 1e-6;
@@ -163,10 +164,6 @@ pub fn linearise(instance: &Instance, outcome: &Outcome) -> Linearised {
     }
     out.reduced = reduced.into_iter().map(Sum::value).collect();
     out
-}
-
-fn largest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |s, v| v.abs().max(s))
 }
 
 /// Keeps the largest value and where it was.

@@ -20,6 +20,7 @@ use super::Ended;
 use super::form::{Point, Problem, Sparse};
 use super::interior::Run;
 use crate::solve::budget::Size;
+use crate::solve::vector::{dot, largest};
 use crate::solve::{Budget, Progress};
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::ldlt::factor::LdltRegularization;
@@ -680,14 +681,6 @@ impl System {
         let z = z.collect();
         Iterate { value, y, w, z }
     }
-}
-
-fn largest(v: &[f64]) -> f64 {
-    v.iter().fold(0.0, |t: f64, v| t.max(v.abs()))
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// How much of a step keeps all positive, 1 at most.

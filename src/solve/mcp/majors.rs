@@ -24,6 +24,7 @@ use super::log;
 use super::merit::{phi, phi_slopes};
 use super::path::{HARRIS, HARRIS_CLOSE, PathEnd, PathResult, Start, follow};
 use super::run::{Point, Run, StallCounter, Stop};
+use crate::solve::vector::{dot, sum};
 
 /// Armijo constant of the M test and of the line search.
 const ARMIJO: f64 = 1e-4;
@@ -406,12 +407,7 @@ impl Majors {
         tries: usize,
     ) -> Result<bool, Stop> {
         let reference = self.reference(run);
-        let direction: Vec<f64> = candidate
-            .y
-            .iter()
-            .zip(&self.point.x)
-            .map(|(y, x)| y - x)
-            .collect();
+        let direction = sum(&candidate.y, -1.0, &self.point.x);
         if self.checkpoint.direction.is_none() {
             self.checkpoint.direction = Some(direction);
         }
@@ -467,14 +463,7 @@ impl Majors {
         if let Some(direction) = self.checkpoint.direction.take() {
             let mut step = 0.5;
             while step >= 1e-3 {
-                let mut x: Vec<f64> = self
-                    .checkpoint
-                    .point
-                    .x
-                    .iter()
-                    .zip(&direction)
-                    .map(|(x, d)| x + step * d)
-                    .collect();
+                let mut x = sum(&self.checkpoint.point.x, step, &direction);
                 run.clip(&mut x);
                 if let Some(next) = run.point(x)
                     && next.merit <= (1.0 - ARMIJO * step) * reference
@@ -515,19 +504,9 @@ impl Majors {
         }
         let mut step = 1.0;
         while step > 1e-12 {
-            let mut x: Vec<f64> = from
-                .x
-                .iter()
-                .zip(&gradient)
-                .map(|(x, g)| x - step * g)
-                .collect();
+            let mut x = sum(&from.x, -step, &gradient);
             run.clip(&mut x);
-            let fall: f64 = x
-                .iter()
-                .zip(&from.x)
-                .zip(&gradient)
-                .map(|((y, x), g)| (x - y) * g)
-                .sum();
+            let fall = dot(&sum(&from.x, -1.0, &x), &gradient);
             if let Some(next) = run.point(x)
                 && next.merit <= from.merit - ARMIJO * fall
                 && fall > 0.0
