@@ -317,27 +317,22 @@ impl Form {
 
     /// The part of a basis of the instance that belongs to the problem.
     pub fn basis(&self, of_instance: &[BasisStatus]) -> Basis {
-        let columns = self.columns.iter().map(|&j| j as usize);
-        let rows = self
-            .rows
-            .iter()
-            .map(|&i| self.instance_columns + i as usize);
-        columns.chain(rows).map(|k| of_instance[k]).collect()
+        self.places().map(|k| of_instance[k]).collect()
     }
 
     /// A basis of the problem as one of the instance; what the problem does not have is basic.
     pub fn instance_basis(&self, basis: &[BasisStatus]) -> Basis {
         let mut out = vec![BasisStatus::Basic; self.instance_columns + self.instance_rows];
-        let columns = self.columns.iter().map(|&j| j as usize);
-        let rows = self
-            .rows
-            .iter()
-            .map(|&i| self.instance_columns + i as usize);
-        columns
-            .chain(rows)
-            .zip(basis)
-            .for_each(|(k, &status)| out[k] = status);
+        let places = self.places().zip(basis);
+        places.for_each(|(k, &status)| out[k] = status);
         out
+    }
+
+    /// Where the columns, then the rows, are in a basis of the instance.
+    fn places(&self) -> impl Iterator<Item = usize> + '_ {
+        let columns = self.columns.iter().map(|&j| j as usize);
+        let rows = self.rows.iter();
+        columns.chain(rows.map(|&i| self.instance_columns + i as usize))
     }
 
     fn made(instance: &Instance, definition: Option<Definition>) -> Self {
