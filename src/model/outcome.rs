@@ -200,7 +200,7 @@ impl Outcome {
     }
 
     /// That of a program to which columns and rows were added: so many were there before.
-    pub fn of_first(mut self, columns: usize, rows: usize) -> Self {
+    pub(crate) fn of_first(mut self, columns: usize, rows: usize) -> Self {
         self.level.truncate(columns);
         self.column_marginal.truncate(columns);
         self.row_marginal.truncate(rows);
