@@ -198,6 +198,15 @@ impl Outcome {
             basis: None,
         }
     }
+
+    /// That of a program to which columns and rows were added: so many were there before.
+    pub(crate) fn of_first(mut self, columns: usize, rows: usize) -> Self {
+        self.level.truncate(columns);
+        self.column_marginal.truncate(columns);
+        self.row_marginal.truncate(rows);
+        self.basis = None;
+        self
+    }
 }
 
 /// Where a variable of a linear program is at a vertex.

@@ -339,7 +339,7 @@ mod tests {
     use super::*;
     use crate::model::function::Function;
     use crate::model::instance::{Kernel, Relation, Sense};
-    use crate::solve::conformance;
+    use crate::solve::dense;
 
     struct Plants;
 
@@ -359,7 +359,7 @@ mod tests {
     }
 
     fn instance() -> Instance {
-        conformance::linear(
+        dense::linear(
             Sense::Minimize,
             &[0.225, -1.0],
             &[(0., f64::INFINITY), (0., 4.)],

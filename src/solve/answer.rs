@@ -410,11 +410,7 @@ pub fn certify(instance: &Instance, answer: &Answer, budget: &Budget) -> Result<
         }
         _ => return lp::certify::certify(instance, &answer.outcome, budget),
     };
-    let nothing = Unproved {
-        why,
-        row: None,
-        column: None,
-    };
+    let nothing = Unproved::new(why);
     Ok(Proof {
         low: f64::NEG_INFINITY,
         high: f64::INFINITY,

@@ -9,6 +9,7 @@ use super::mcp;
 use super::mpec::pairs::Program;
 use super::nlp::relaxation::is_infeasible;
 use super::pairing::{match_rows, refuse};
+use super::vector::clip;
 use super::{Budget, Claim, Outcome, Settings, SolveError, SolverStatus, Strategy};
 use crate::autodiff::{EvalFailure, Evaluator};
 use crate::model::instance::{Instance, Relation};
@@ -267,9 +268,7 @@ fn solve(
     noise::snap(&mut out.x, lower, upper);
     if square && out.status != mcp::Status::Solved {
         // The rows do not hold: the bounds shall.
-        for (x, (&l, &u)) in out.x.iter_mut().zip(lower.iter().zip(upper)) {
-            *x = x.max(l).min(u);
-        }
+        clip(&mut out.x, (lower, upper));
     }
     if out.status == mcp::Status::EvaluationFailed {
         let mut f = vec![0.0; instance.column_count()];

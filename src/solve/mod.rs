@@ -10,7 +10,7 @@ pub mod budget;
 pub mod certificate;
 pub mod complementarity;
 #[cfg(test)]
-pub mod conformance;
+pub(crate) mod dense;
 pub mod discrete;
 pub(crate) mod factor_size;
 #[cfg(feature = "highs")]
@@ -29,6 +29,7 @@ pub mod registry;
 pub mod strategy;
 pub mod structure;
 pub mod study;
+mod vector;
 pub mod why;
 
 pub use budget::{Budget, Limits, Monitor, Progress, Quiet, Stop};
@@ -91,10 +92,19 @@ pub struct SolveError {
 impl SolveError {
     /// With no row or column to blame.
     pub fn new(message: impl Into<String>) -> Self {
+        Self::at(None, None, message)
+    }
+
+    /// With the row, the column or both to blame.
+    pub(crate) fn at(
+        row: Option<usize>,
+        column: Option<usize>,
+        message: impl Into<String>,
+    ) -> Self {
         Self {
             message: message.into(),
-            row: None,
-            column: None,
+            row,
+            column,
         }
     }
 }

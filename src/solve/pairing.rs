@@ -11,11 +11,7 @@ pub(super) fn refuse<T>(
     row: Option<usize>,
     column: Option<usize>,
 ) -> Result<T, SolveError> {
-    Err(SolveError {
-        message: message.into(),
-        row,
-        column,
-    })
+    Err(SolveError::at(row, column, message))
 }
 
 /// A pair whose row's relation contradicts the bounds of its column.

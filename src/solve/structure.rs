@@ -159,7 +159,7 @@ mod tests {
     use super::*;
 
     fn graph(rows: &[&[usize]]) -> Sparse {
-        let mut graph = Sparse::new();
+        let mut graph = Sparse::default();
         for row in rows {
             graph.push(row.iter().map(|&j| (j, 1.0)));
         }

@@ -11,7 +11,6 @@
 use super::Bridge;
 use crate::model::instance::{Instance, Objective, Relation, Sense};
 use crate::model::problem_type::ProblemType;
-use crate::solve::Outcome;
 use crate::solve::answer::Answer;
 use crate::solve::backend::Reply;
 
@@ -72,16 +71,7 @@ impl Bridge for Elastic {
 
     fn restore(&self, instance: &Instance, answer: &Answer) -> Option<Reply> {
         let (n, m) = (instance.column_count(), instance.row_count());
-        let outcome = &answer.outcome;
-        answer.status.is_solution().then(|| {
-            let outcome = Outcome {
-                level: outcome.level[..n].to_vec(),
-                row_marginal: outcome.row_marginal[..m].to_vec(),
-                column_marginal: outcome.column_marginal[..n].to_vec(),
-                basis: None,
-                ..outcome.clone()
-            };
-            outcome.into()
-        })
+        let outcome = || answer.outcome.clone().of_first(n, m);
+        answer.status.is_solution().then(|| outcome().into())
     }
 }

@@ -24,7 +24,7 @@ use crate::model::problem_type::ProblemType;
 use crate::solve::answer::Answer;
 use crate::solve::backend::{Backend, Reply, Task};
 use crate::solve::certificate::{TOLERANCE, nonlinear::linearise, primal};
-use crate::solve::{Claim, ModelStatus, Outcome, Settings, Strategy};
+use crate::solve::{Claim, ModelStatus, Settings, Strategy};
 use std::collections::BTreeMap;
 
 /// Times that variables make up for each other, at most.
@@ -111,14 +111,13 @@ impl Bridge for Epigraph {
             ModelStatus::Infeasible => false,
             _ => return None,
         };
-        let outcome = answer.outcome.clone();
+        let mut outcome = answer.outcome.clone().of_first(n, m);
         let objective = instance.objective?.column as usize;
-        let value = outcome.level[objective];
-        let mut level = outcome.level;
-        level.truncate(n);
+        let level = &mut outcome.level;
+        let value = level[objective];
         let mut evaluator = Evaluator::first_order(instance);
         let mut activity = vec![0.0; m];
-        evaluator.rows(&level, &mut activity).ok()?;
+        evaluator.rows(level, &mut activity).ok()?;
         for _ in 0..SWEEPS {
             let mut moved = false;
             for (&i, &j) in &self.makes_up {
@@ -127,39 +126,25 @@ impl Bridge for Epigraph {
                 moved |= gap != 0.0;
                 level[j] += gap / a;
             }
-            evaluator.rows(&level, &mut activity).ok()?;
+            evaluator.rows(level, &mut activity).ok()?;
             if !moved {
                 break;
             }
         }
-        let mut row_marginal = outcome.row_marginal;
-        row_marginal.truncate(m);
-        let at = linearise(instance, &mut evaluator, &level, &row_marginal).ok()?;
-        let own = primal(instance, &level, &activity, &at.row_size);
+        let at = linearise(instance, &mut evaluator, level, &outcome.row_marginal).ok()?;
+        let own = primal(instance, level, &activity, &at.row_size);
         let same = (level[objective] - value).abs() <= TOLERANCE * value.abs().max(1.0);
         if proved && !(same && own.is_feasible(TOLERANCE)) {
             return None;
         }
-        let mut column_marginal = outcome.column_marginal;
-        column_marginal.truncate(n);
-        let message = match self.instance.is_linear() && proved {
-            true => Some("convex: a local optimum is a global one".into()),
-            false => outcome.message,
+        outcome.ray.clear();
+        outcome.claim = match proved {
+            true => Claim::LocallySolved,
+            false => Claim::Infeasible,
         };
-        let outcome = Outcome {
-            level,
-            row_marginal,
-            column_marginal,
-            claim: if proved {
-                Claim::LocallySolved
-            } else {
-                Claim::Infeasible
-            },
-            ray: Vec::new(),
-            basis: None,
-            message,
-            ..outcome
-        };
+        if self.instance.is_linear() && proved {
+            outcome.message = Some("convex: a local optimum is a global one".into());
+        }
         Some(outcome.into())
     }
 }

@@ -134,15 +134,11 @@ impl Bridge for InnerSums {
 
     fn restore(&self, instance: &Instance, answer: &Answer) -> Option<Reply> {
         let (n, m) = (instance.column_count(), instance.row_count());
-        let mut outcome = answer.outcome.clone();
-        outcome.level.truncate(n);
-        outcome.column_marginal.truncate(n);
-        outcome.row_marginal.truncate(m);
+        let mut outcome = answer.outcome.clone().of_first(n, m);
         match outcome.claim {
             Claim::LocallyInfeasible => outcome.ray.truncate(m),
             _ => outcome.ray.clear(),
         }
-        outcome.basis = None;
         Some(outcome.into())
     }
 }

@@ -49,9 +49,8 @@ struct Pattern {
     column: Vec<u32>,
     /// Rows of each column.
     rows: Vec<Vec<u32>>,
-    term_start: Vec<usize>,
-    /// Group and number.
-    term: Vec<(u32, u32)>,
+    /// Terms of each row: group and number.
+    terms: Vec<Vec<(u32, u32)>>,
 }
 
 impl Pattern {
@@ -60,7 +59,6 @@ impl Pattern {
         let mut places = instance.nonlinear_places().into_iter().peekable();
         let (mut start, mut column) = (vec![0], Vec::new());
         let mut rows = vec![Vec::new(); n];
-        let mut term_start = vec![0; m + 1];
         for i in 0..m {
             let first = column.len();
             column.extend(instance.matrix.row(i).map(|e| e.0 as u32));
@@ -79,26 +77,17 @@ impl Pattern {
             column.truncate(last);
             start.push(last);
         }
-        for t in instance.terms() {
-            term_start[t.row + 1] += 1;
-        }
-        for i in 0..m {
-            term_start[i + 1] += term_start[i];
-        }
-        let mut next = term_start.clone();
-        let mut term = vec![(0, 0); term_start[m]];
+        let mut terms = vec![Vec::new(); m];
         for (g, group) in instance.nonlinear.iter().enumerate() {
             for (t, &i) in group.row.iter().enumerate() {
-                term[next[i as usize]] = (g as u32, t as u32);
-                next[i as usize] += 1;
+                terms[i as usize].push((g as u32, t as u32));
             }
         }
         Self {
             start,
             column,
             rows,
-            term_start,
-            term,
+            terms,
         }
     }
 
@@ -111,8 +100,7 @@ impl Pattern {
         instance: &'i Instance,
         i: usize,
     ) -> impl Iterator<Item = (&'i KernelTerms, KernelTerm<'i>)> {
-        let own = &self.term[self.term_start[i]..self.term_start[i + 1]];
-        own.iter().map(|&(g, t)| {
+        self.terms[i].iter().map(|&(g, t)| {
             let group = &instance.nonlinear[g as usize];
             (group, group.term(t as usize))
         })

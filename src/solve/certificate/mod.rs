@@ -28,6 +28,7 @@ pub mod nonlinear;
 use crate::model::instance::{INFINITE, Instance, Relation, Sense};
 use crate::model::outcome::{Claim, ModelStatus, Outcome};
 use crate::model::sum::Sum;
+use crate::solve::vector::largest;
 
 /// Relative tolerance for primal and dual residuals and the gap.
 pub const TOLERANCE: f64 = 1e-6;
@@ -165,10 +166,6 @@ pub fn linearise(instance: &Instance, outcome: &Outcome) -> Linearised {
     out
 }
 
-fn largest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |s, v| v.abs().max(s))
-}
-
 /// Keeps the largest value and where it was.
 #[derive(Default)]
 struct Worst {
@@ -192,6 +189,16 @@ fn relative(violation: f64, size: f64) -> f64 {
         0.0
     } else {
         violation / size
+    }
+}
+
+/// By how much a multiplier has the sign that a row excludes, for a minimum; not above 0 where it has the other.
+fn wrong_sign(relation: Relation, multiplier: f64) -> f64 {
+    match relation {
+        Relation::Equal => 0.0,
+        Relation::Greater => -multiplier,
+        Relation::Less => multiplier,
+        Relation::Free => multiplier.abs(),
     }
 }
 
@@ -265,12 +272,7 @@ pub fn residuals(instance: &Instance, outcome: &Outcome, at: &Linearised) -> Res
     for i in 0..instance.row_count() {
         let m = outcome.row_marginal[i];
         let rhs = instance.rows.rhs[i];
-        let wrong = match instance.rows.relation[i] {
-            Relation::Equal => 0.0,
-            Relation::Greater => (-sigma * m).max(0.0),
-            Relation::Less => (sigma * m).max(0.0),
-            Relation::Free => m.abs(),
-        };
+        let wrong = wrong_sign(instance.rows.relation[i], sigma * m).max(0.0);
         dual_row.see(wrong, i);
         dual_relative = dual_relative.max(relative(wrong, unit));
         let slack = match instance.rows.relation[i] {
@@ -411,12 +413,7 @@ pub fn proves_infeasible(instance: &Instance, y: &[f64]) -> bool {
     let (mut margin, mut size) = (Sum::default(), 0.0f64);
     let unit = largest(y);
     for (i, &y) in y.iter().enumerate() {
-        let wrong = match instance.rows.relation[i] {
-            Relation::Equal => 0.0,
-            Relation::Greater => -y,
-            Relation::Less => y,
-            Relation::Free => y.abs(),
-        };
+        let wrong = wrong_sign(instance.rows.relation[i], y);
         if wrong > 1e-9 * unit {
             return false;
         }
@@ -539,7 +536,7 @@ pub fn is_beyond_bounds(instance: &Instance) -> bool {
 mod tests {
     use super::*;
     use crate::model::outcome::SolverStatus;
-    use crate::solve::conformance::linear as program;
+    use crate::solve::dense::linear as program;
 
     fn outcome(level: &[f64], row_marginal: &[f64], claim: Claim, ray: &[f64]) -> Outcome {
         Outcome {
@@ -681,7 +678,7 @@ mod tests {
             ..Instance::default()
         };
         let inf = f64::INFINITY;
-        instance.columns = crate::solve::conformance::columns(&[(0., inf), (0., inf), (-inf, inf)]);
+        instance.columns = crate::solve::dense::columns(&[(0., inf), (0., inf), (-inf, inf)]);
         instance.rows.relation = vec![Relation::Greater, Relation::Greater, Relation::Equal];
         instance.rows.rhs = vec![2.0, -1.0, 1.0];
         let at = |x: &[f64]| {

@@ -17,10 +17,11 @@
 //! The primal residuals are those of [`super`], with |∂a_i/∂x_j · x_j| as the size of an
 //! entry.
 
-use super::{Linearised, Residuals, TOLERANCE, primal, row_violation, units};
+use super::{Linearised, Residuals, TOLERANCE, primal, row_violation, units, wrong_sign};
 use crate::autodiff::{ErrorKind, EvalFailure, Evaluator, kinks};
 use crate::model::instance::{Instance, Relation};
 use crate::model::sum::Sum;
+use crate::solve::vector::largest;
 
 /// Width of the smoothing by which derivatives at a kink are judged; a shrinking sequence ends there.
 pub const KINK_WIDTH: f64 = 1e-7;
@@ -368,15 +369,10 @@ pub fn is_locally_infeasible(
     let mut reach = vec![Sum::default(); x.len()];
     let mut size_of = vec![0.0f64; x.len()];
     let mut margin = Sum::default();
-    let largest = y.iter().fold(0.0f64, |s, v| s.max(v.abs()));
+    let unit = largest(y);
     for i in 0..m {
-        let wrong = match instance.rows.relation[i] {
-            Relation::Equal => 0.0,
-            Relation::Greater => -y[i],
-            Relation::Less => y[i],
-            Relation::Free => y[i].abs(),
-        };
-        if wrong > 1e-6 * largest || y[i].is_nan() {
+        let wrong = wrong_sign(instance.rows.relation[i], y[i]);
+        if wrong > 1e-6 * unit || y[i].is_nan() {
             return false;
         }
         if wrong > 0.0 || y[i] == 0.0 {

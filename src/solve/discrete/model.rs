@@ -25,6 +25,17 @@ pub struct Change {
     pub upper: f64,
 }
 
+impl Change {
+    /// Of a column, to these bounds.
+    pub fn new(column: usize, lower: f64, upper: f64) -> Self {
+        Self {
+            column,
+            lower,
+            upper,
+        }
+    }
+}
+
 /// A linear program (or the linear rows of a nonlinear one) with discrete columns.
 #[derive(Clone, Debug, Default)]
 pub struct Mip {

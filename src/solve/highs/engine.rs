@@ -65,7 +65,7 @@ impl Engine {
     /// With a problem, the kinds of its columns (none: all continuous), and the upper triangle of a Hessian by columns. None:
     /// HiGHS does not take it.
     pub(crate) fn new(p: &Problem, kinds: &[HighsInt], hessian: Option<&Sparse>) -> Option<Self> {
-        let empty = Sparse::new();
+        let empty = Sparse::default();
         let hessian = hessian.unwrap_or(&empty);
         // what is the upper triangle by columns is the lower one by rows, and HiGHS wants that by columns
         let lower = match hessian.lines() {

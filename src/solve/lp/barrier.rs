@@ -20,6 +20,7 @@ use super::Ended;
 use super::form::{Point, Problem, Sparse};
 use super::interior::Run;
 use crate::solve::budget::Size;
+use crate::solve::vector::{dot, largest};
 use crate::solve::{Budget, Progress};
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::ldlt::factor::LdltRegularization;
@@ -105,25 +106,18 @@ struct Program {
 impl Program {
     fn new(p: &Problem) -> (Self, Vec<usize>) {
         let kept: Vec<usize> = (0..p.n()).filter(|&j| p.lower[j] < p.upper[j]).collect();
-        let mut number = vec![usize::MAX; p.n()];
-        kept.iter().enumerate().for_each(|(k, &j)| number[j] = k);
+        let all: Vec<usize> = (0..p.m()).collect();
+        let part = p.part(&kept, &all, &p.lower);
         let (n, m) = (kept.len(), p.m());
-        let mut rows = Sparse::new();
-        let mut cost: Vec<f64> = kept.iter().map(|&j| p.cost[j]).collect();
+        let mut cost = part.cost;
         cost.resize(n + m, 0.0);
-        let mut limits: Vec<[f64; 2]> = kept.iter().map(|&j| [p.lower[j], p.upper[j]]).collect();
-        for i in 0..m {
-            let fixed = p.rows.line(i).filter(|e| number[e.0] == usize::MAX);
-            let moved: f64 = fixed.map(|(j, a)| a * p.lower[j]).sum();
-            limits.push([p.row_lower[i] - moved, p.row_upper[i] - moved]);
-            let kept = p.rows.line(i).filter(|e| number[e.0] != usize::MAX);
-            rows.push(kept.map(|(j, a)| (number[j], a)));
-        }
+        let columns = part.lower.iter().zip(&part.upper);
+        let limits = columns.chain(part.row_lower.iter().zip(&part.row_upper));
         let mut out = Self {
             n,
             m,
-            columns: rows.transpose(n),
-            rows,
+            columns: part.columns,
+            rows: part.rows,
             cost,
             value: Vec::with_capacity(n + m),
             of: Vec::new(),
@@ -131,7 +125,7 @@ impl Program {
             side: Vec::new(),
             constant: Vec::with_capacity(n + m),
         };
-        for (k, &[l, u]) in limits.iter().enumerate() {
+        for (k, (&l, &u)) in limits.enumerate() {
             out.value.push(0.0f64.max(l).min(u));
             out.constant.push(l == u);
             for (side, sign) in [(l, 1.0), (u, -1.0)] {
@@ -687,14 +681,6 @@ impl System {
         let z = z.collect();
         Iterate { value, y, w, z }
     }
-}
-
-fn largest(v: &[f64]) -> f64 {
-    v.iter().fold(0.0, |t: f64, v| t.max(v.abs()))
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// How much of a step keeps all positive, 1 at most.

@@ -19,7 +19,7 @@ use crate::model::outcome::{Basis, BasisStatus};
 use crate::solve::{Outcome, SolveError};
 
 /// A sparse matrix in compressed form; "lines" are columns or rows.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Sparse {
     /// Line k is `start[k]..start[k+1]`.
     pub start: Vec<usize>,
@@ -29,15 +29,18 @@ pub struct Sparse {
     pub value: Vec<f64>,
 }
 
-impl Sparse {
+impl Default for Sparse {
     /// A matrix without lines.
-    pub fn new() -> Self {
+    fn default() -> Self {
         Self {
             start: vec![0],
-            ..Self::default()
+            index: Vec::new(),
+            value: Vec::new(),
         }
     }
+}
 
+impl Sparse {
     /// Appends a line.
     pub fn push(&mut self, entries: impl IntoIterator<Item = (usize, f64)>) {
         for (i, v) in entries {
@@ -132,6 +135,32 @@ impl Problem {
         bounds.into_iter().find(|b| b.is_finite()).unwrap_or(0.0)
     }
 
+    /// The program in some of its columns and rows; other columns stay at these values.
+    pub fn part(&self, columns: &[usize], rows: &[usize], values: &[f64]) -> Self {
+        let mut number = vec![usize::MAX; self.n()];
+        columns.iter().enumerate().for_each(|(k, &j)| number[j] = k);
+        let is_kept = |e: &(usize, f64)| number[e.0] != usize::MAX;
+        let pick = |all: &[f64]| columns.iter().map(|&j| all[j]).collect();
+        let others = (0..self.n()).filter(|&j| number[j] == usize::MAX);
+        let mut out = Self {
+            cost: pick(&self.cost),
+            lower: pick(&self.lower),
+            upper: pick(&self.upper),
+            offset: self.offset + others.map(|j| self.cost[j] * values[j]).sum::<f64>(),
+            ..Self::default()
+        };
+        for &i in rows {
+            let others = self.rows.line(i).filter(|e| !is_kept(e));
+            let moved: f64 = others.map(|(j, a)| a * values[j]).sum();
+            out.row_lower.push(self.row_lower[i] - moved);
+            out.row_upper.push(self.row_upper[i] - moved);
+            let kept = self.rows.line(i).filter(|e| e.1 != 0.0 && is_kept(e));
+            out.rows.push(kept.map(|(j, a)| (number[j], a)));
+        }
+        out.columns = out.rows.transpose(columns.len());
+        out
+    }
+
     /// Whether y proves the problem infeasible, clearly: more strictly than
     /// [`crate::solve::certificate`] asks.
     pub fn proves_infeasible(&self, y: &[f64]) -> bool {
@@ -215,14 +244,6 @@ pub struct Form {
     instance_columns: usize,
 }
 
-fn fail(message: String, row: Option<usize>, column: Option<usize>) -> SolveError {
-    SolveError {
-        message,
-        row,
-        column,
-    }
-}
-
 /// Checks what every solver relies on: shapes, order and range of indices, finite data, bounds
 /// that do not cross. A solver given anything else may return nonsense without a word (Clarabel
 /// does for NaN, infinities and unsorted columns).
@@ -235,43 +256,43 @@ pub fn validate(instance: &Instance) -> Result<(), SolveError> {
         && matrix.column.len() == matrix.value.len()
         && matrix.start.last().copied().unwrap_or(0) == matrix.value.len();
     if !shapes {
-        return Err(fail(
-            "the generated model is inconsistent (please report this)".into(),
-            None,
-            None,
+        return Err(SolveError::new(
+            "the generated model is inconsistent (please report this)",
         ));
     }
     for j in 0..n {
+        let fail = |message: String| Err(SolveError::at(None, Some(j), message));
         let (l, u) = (instance.columns.lower[j], instance.columns.upper[j]);
         if l.is_nan() || u.is_nan() {
-            return Err(fail("a bound is not a number".into(), None, Some(j)));
+            return fail("a bound is not a number".into());
         }
         if l > u {
-            let message = format!("the lower bound {l} is greater than the upper bound {u}");
-            return Err(fail(message, None, Some(j)));
+            return fail(format!(
+                "the lower bound {l} is greater than the upper bound {u}"
+            ));
         }
         if l == f64::INFINITY || u == f64::NEG_INFINITY {
-            let message = "the lower bound is +INF or the upper bound is -INF".into();
-            return Err(fail(message, None, Some(j)));
+            return fail("the lower bound is +INF or the upper bound is -INF".into());
         }
     }
     for i in 0..m {
+        let fail = |column, message: String| Err(SolveError::at(Some(i), column, message));
         let rhs = instance.rows.rhs[i];
         if !rhs.is_finite() {
             let message = format!("the constant of the row is {rhs}, not a finite number");
-            return Err(fail(message, Some(i), None));
+            return fail(None, message);
         }
         if matrix.start[i] > matrix.start[i + 1] {
-            return Err(fail("the row is inconsistent".into(), Some(i), None));
+            return fail(None, "the row is inconsistent".into());
         }
         let mut last = None;
         for (j, v) in matrix.row(i) {
             if j >= n || last.is_some_and(|k| k >= j) {
-                return Err(fail("the row is inconsistent".into(), Some(i), None));
+                return fail(None, "the row is inconsistent".into());
             }
             if !v.is_finite() {
                 let message = format!("the coefficient is {v}, not a finite number");
-                return Err(fail(message, Some(i), Some(j)));
+                return fail(Some(j), message);
             }
             last = Some(j);
         }
@@ -296,27 +317,22 @@ impl Form {
 
     /// The part of a basis of the instance that belongs to the problem.
     pub fn basis(&self, of_instance: &[BasisStatus]) -> Basis {
-        let columns = self.columns.iter().map(|&j| j as usize);
-        let rows = self
-            .rows
-            .iter()
-            .map(|&i| self.instance_columns + i as usize);
-        columns.chain(rows).map(|k| of_instance[k]).collect()
+        self.places().map(|k| of_instance[k]).collect()
     }
 
     /// A basis of the problem as one of the instance; what the problem does not have is basic.
     pub fn instance_basis(&self, basis: &[BasisStatus]) -> Basis {
         let mut out = vec![BasisStatus::Basic; self.instance_columns + self.instance_rows];
-        let columns = self.columns.iter().map(|&j| j as usize);
-        let rows = self
-            .rows
-            .iter()
-            .map(|&i| self.instance_columns + i as usize);
-        columns
-            .chain(rows)
-            .zip(basis)
-            .for_each(|(k, &status)| out[k] = status);
+        let places = self.places().zip(basis);
+        places.for_each(|(k, &status)| out[k] = status);
         out
+    }
+
+    /// Where the columns, then the rows, are in a basis of the instance.
+    fn places(&self) -> impl Iterator<Item = usize> + '_ {
+        let columns = self.columns.iter().map(|&j| j as usize);
+        let rows = self.rows.iter();
+        columns.chain(rows.map(|&i| self.instance_columns + i as usize))
     }
 
     fn made(instance: &Instance, definition: Option<Definition>) -> Self {
@@ -345,7 +361,6 @@ impl Form {
         }
         problem.cost = vec![0.0; columns.len()];
         let mut rows = Vec::with_capacity(m);
-        problem.rows = Sparse::new();
         for i in 0..m {
             let rhs = instance.rows.rhs[i];
             if let Some(d) = definition.filter(|d| d.row == i) {

@@ -273,7 +273,7 @@ fn sources(p: &Problem) -> Vec<Source> {
 
 /// Rows and right-hand sides of Clarabel's constraints.
 fn stack(p: &Problem, sources: &[Source]) -> (Sparse, Vec<f64>) {
-    let mut matrix = Sparse::new();
+    let mut matrix = Sparse::default();
     let mut b = Vec::with_capacity(sources.len());
     for &source in sources {
         let (sign, side) = match source {

@@ -719,31 +719,29 @@ mod random;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::solve::conformance;
-
-    fn conforms(method: &str, tolerance: f64) {
-        let mut settings = Settings::default();
-        settings.options.push(("method".into(), method.into()));
-        conformance::suite(&Clarabel, &settings, tolerance);
-    }
+    use crate::model::instance::Sense;
+    use crate::solve::Quiet;
+    use crate::solve::dense::linear;
 
     #[test]
-    fn interior_point_conforms() {
-        conforms("interior", 2e-7);
-    }
-
-    #[test]
-    fn simplex_conforms() {
-        conforms("simplex", 1e-12);
-    }
-
-    #[test]
-    fn crossover_conforms() {
-        conforms("crossover", 1e-12);
-    }
-
-    #[test]
-    fn default_conforms() {
-        conformance::suite(&Clarabel, &Settings::default(), 1e-12);
+    fn numbers_that_are_none_are_refused() {
+        let place = |instance: &Instance| {
+            let mut quiet = Quiet::default();
+            let task = Task::new(ProblemType::Lp, instance);
+            let reply = Clarabel.solve(&task, &Settings::default(), &Budget::unlimited(&mut quiet));
+            let error = reply.expect_err("an invalid instance");
+            (error.row, error.column)
+        };
+        let valid = linear(Sense::Minimize, &[1., 1.], &[(0., 1.), (0., 2.)], &[]);
+        for upper in [-1.0, f64::NAN] {
+            let mut crossed = valid.clone();
+            crossed.columns.upper[1] = upper;
+            assert_eq!(place(&crossed), (None, Some(1)));
+        }
+        let (mut endless, mut entry) = (valid.clone(), valid);
+        endless.rows.rhs[0] = f64::INFINITY;
+        entry.matrix.value[0] = f64::NAN;
+        assert_eq!(place(&endless).0, Some(0));
+        assert_eq!(place(&entry).0, Some(0));
     }
 }

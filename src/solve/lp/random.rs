@@ -3,16 +3,19 @@
 
 use proptest::prelude::*;
 
-use super::certify;
+use super::form::Form;
+use super::presolve::presolve;
+use super::simplex::{Simplex, State};
+use super::{Ended, certify};
 use crate::model::instance::{Instance, Relation, Sense};
 use crate::model::problem_type::ProblemType;
 use crate::solve::Budget;
 use crate::solve::answer::subproblem;
 use crate::solve::backend::Task;
 use crate::solve::certificate;
-use crate::solve::conformance::{Quiet, Row, linear};
+use crate::solve::dense::{Row, linear};
 use crate::solve::range::{Ranges, ranges};
-use crate::solve::{Claim, ModelStatus, Outcome, Settings};
+use crate::solve::{Claim, ModelStatus, Outcome, Quiet, Settings};
 
 /// What a random program is made of.
 #[derive(Clone, Debug)]
@@ -170,6 +173,33 @@ proptest! {
             let shut = |p: &certify::Proof| if minimise { p.high == f64::INFINITY } else { p.low == f64::NEG_INFINITY };
             // Unbounded: no dual bound; infeasible: no point.
             prop_assert!(open(&wide) || shut(&wide), "{wide:?}");
+        }
+    }
+
+    /// What is left of a program after the presolve has its value, and the way back ends at an optimal basis, or at a proof that there is no point.
+    #[test]
+    fn smaller_programs_lead_back(p in parts()) {
+        let p = Form::new(&p.instance()).expect("valid").problem;
+        let Some(reduced) = presolve(&p) else { return Ok(()) };
+        if let Some(y) = &reduced.proof {
+            prop_assert!(p.proves_infeasible(&reduced.restore_ray(y)));
+            return Ok(());
+        }
+        let [mut direct, mut smaller] = [&p, &reduced.problem].map(Simplex::new);
+        let ended = smaller.solve(&mut |_| None);
+        if let Ended::Infeasible(y) = &ended {
+            prop_assert!(p.proves_infeasible(&reduced.restore_ray(y)));
+        }
+        prop_assert_eq!(direct.solve(&mut |_| None) == Ended::Solved, ended == Ended::Solved);
+        if ended == Ended::Solved {
+            let (point, basis) = reduced.restore(&smaller.point().expect("a point"), &smaller.basis());
+            prop_assert_eq!(basis.iter().filter(|s| **s == State::Basic).count(), p.m());
+            let mut again = Simplex::new(&p);
+            prop_assert_eq!(again.solve_from_basis(&basis, &mut |_| None), Ended::Solved);
+            prop_assert_eq!(again.iterations, 0);
+            let value = |x: &[f64]| p.cost.iter().zip(x).map(|(c, x)| c * x).sum::<f64>();
+            let best = value(&direct.point().expect("a point").x);
+            prop_assert!((value(&point.x) - best).abs() < 1e-9);
         }
     }
 

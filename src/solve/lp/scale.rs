@@ -144,30 +144,25 @@ impl Scaling {
 
     /// A point in the old units.
     pub fn restore(&self, mut p: Point) -> Point {
-        for (x, &c) in p.x.iter_mut().zip(&self.column) {
-            *x *= c * self.size;
-        }
-        for (d, &c) in p.d.iter_mut().zip(&self.column) {
-            *d *= self.price / c;
-        }
-        for (y, &r) in p.y.iter_mut().zip(&self.row) {
-            *y *= self.price * r;
-        }
+        self.change(&mut p, |v, unit| *v *= unit);
         p
     }
 
     /// A point in the new units.
     pub fn carry(&self, mut p: Point) -> Point {
-        for (x, &c) in p.x.iter_mut().zip(&self.column) {
-            *x /= c * self.size;
-        }
-        for (d, &c) in p.d.iter_mut().zip(&self.column) {
-            *d /= self.price / c;
-        }
-        for (y, &r) in p.y.iter_mut().zip(&self.row) {
-            *y /= self.price * r;
-        }
+        self.change(&mut p, |v, unit| *v /= unit);
         p
+    }
+
+    /// Does this to each number of a point with what its new unit is in the old ones.
+    fn change(&self, p: &mut Point, change: impl Fn(&mut f64, f64)) {
+        let columns = || self.column.iter();
+        let x = p.x.iter_mut().zip(columns());
+        x.for_each(|(x, c)| change(x, c * self.size));
+        let d = p.d.iter_mut().zip(columns());
+        d.for_each(|(d, c)| change(d, self.price / c));
+        let y = p.y.iter_mut().zip(&self.row);
+        y.for_each(|(y, r)| change(y, self.price * r));
     }
 
     /// Whether no number of the scaled problem left the range in which scaling is exact.
@@ -225,7 +220,7 @@ mod tests {
     /// Geometric means would make an entry count that changes nothing.
     #[test]
     fn what_changes_nothing_in_a_step_stays_small() {
-        let mut rows = Sparse::new();
+        let mut rows = Sparse::default();
         rows.push([(0, 1e3), (1, 1e-20)]);
         rows.push([(1, 5.0), (2, 1.0)]);
         let problem = Problem {

@@ -224,13 +224,13 @@ mod tests {
         for _ in 0..90 {
             let slot = (random.uniform() * m as f64) as usize;
             columns[slot] = column(&mut random, m, slot);
-            let mut direction = Sparse::new();
+            let mut direction = Sparse::default();
             assert!(basis.solve_sparse(&columns[slot], &mut direction));
             if !basis.replace(slot, &columns[slot], &direction) {
                 basis = Basis::new(&matrix(&columns), fill).expect("diagonally dominant");
             }
             let a = column(&mut random, m, slot);
-            let (mut updated, mut fresh) = (Sparse::new(), vec![0.0; m]);
+            let (mut updated, mut fresh) = (Sparse::default(), vec![0.0; m]);
             assert!(basis.solve_sparse(&a, &mut updated));
             a.iter().for_each(|&(i, v)| fresh[i] = v);
             assert!(

@@ -7,8 +7,7 @@
 //! (J + D + ρI) dx = −(F − w + v) + p/(x−l) − w − q/(u−x) + v,     D = w/(x−l) + v/(u−x),
 //! ```
 //!
-//! with p = q = σμ less the products of the predictor's steps (Mehrotra 1992), or without them where
-//! they shorten the step, and then with outliers among the products pulled in (Gondzio 1996).
+//! with p = q = σμ less the products of the predictor's steps (Mehrotra 1992).
 //!
 //! Where J is not monotone, steps may get short far from a solution: the central path has folds. Then the proximal
 //! term ρ grows with every short step and falls with long ones, so that steps go over the folds. What ρ adds to the
@@ -33,10 +32,6 @@ const DAMPING: f64 = 0.995;
 const STEP_BAD: f64 = 0.1;
 /// Steps in a row without progress that end the crash.
 const STALL_ITERATIONS: usize = 20;
-/// Corrections of outliers per step.
-const CORRECTIONS: usize = 3;
-/// A step below which the second order is left out.
-const STEP_SHORT: f64 = 0.3;
 /// Relative residual of a step.
 const ENOUGH: f64 = 1e-9;
 /// ρ, least and largest.
@@ -298,7 +293,7 @@ impl State {
     }
 }
 
-/// Predictor, corrector, corrections of outliers.
+/// Predictor and corrector.
 fn step(factor: &mut Factor, state: &State, bounds: &Bounds, r: &[f64], mu: f64) -> Option<Step> {
     let n = r.len();
     let zero = vec![0.0; n];
@@ -311,49 +306,11 @@ fn step(factor: &mut Factor, state: &State, bounds: &Bounds, r: &[f64], mu: f64)
         })
         .sum::<f64>()
         / bounds.count as f64;
-    let mut sigma = (after / mu).clamp(0.0, 1.0).powi(3);
-    let mut p: Vec<f64> = (0..n)
-        .map(|i| sigma * mu - predictor.x[i] * predictor.w[i])
-        .collect();
-    let mut q: Vec<f64> = (0..n)
-        .map(|i| sigma * mu + predictor.x[i] * predictor.v[i])
-        .collect();
-    let mut step = state.newton(factor, bounds, r, &p, &q)?;
-    if step.length < STEP_SHORT {
-        let centred = sigma.max(0.5);
-        let target = vec![centred * mu; n];
-        let other = state.newton(factor, bounds, r, &target, &target)?;
-        if other.length > step.length {
-            (step, sigma, p, q) = (other, centred, target.clone(), target);
-        }
-    }
-    let target = sigma.max(1e-3) * mu;
-    let (small, large) = (0.1 * target, 10.0 * target);
-    let pull = |product: f64, aim: f64| {
-        if product < small {
-            aim + small - product
-        } else if product > large {
-            aim + (large - product).max(-large)
-        } else {
-            aim
-        }
+    let sigma = (after / mu).clamp(0.0, 1.0).powi(3);
+    let second = |sign: f64, slack: &[f64]| -> Vec<f64> {
+        let product = predictor.x.iter().zip(slack).map(|(x, s)| x * s);
+        product.map(|p| sigma * mu + sign * p).collect()
     };
-    for _ in 0..CORRECTIONS {
-        if step.length > 0.9 {
-            break;
-        }
-        let t = (2.0 * step.length + 0.1).min(1.0);
-        for i in 0..n {
-            let (low, high) = state.products(&step, t, i);
-            (p[i], q[i]) = (pull(low, p[i]), pull(high, q[i]));
-        }
-        let Some(other) = state.newton(factor, bounds, r, &p, &q) else {
-            break;
-        };
-        if other.length < 1.05 * step.length {
-            break;
-        }
-        step = other;
-    }
-    Some(step)
+    let (p, q) = (second(-1.0, &predictor.w), second(1.0, &predictor.v));
+    state.newton(factor, bounds, r, &p, &q)
 }

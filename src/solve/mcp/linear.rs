@@ -5,7 +5,7 @@
 
 use feral::SparseColMatrix;
 
-use super::basis::{Basis, Sparse};
+use super::basis::Basis;
 use super::factor::Builder;
 use super::merit::natural_residual;
 use super::run::Run;
@@ -20,15 +20,15 @@ pub(super) struct LinearProblem<'a> {
 
 impl LinearProblem<'_> {
     /// The column of a variable in the extended system.
-    pub(super) fn column(&self, variable: Variable) -> Sparse {
-        match variable.kind {
-            Kind::AtLower => vec![(variable.index, -1.0)],
-            Kind::AtUpper => vec![(variable.index, 1.0)],
-            Kind::Between => {
-                let (rows, values) = self.m.column(variable.index);
-                rows.iter().copied().zip(values.iter().copied()).collect()
-            }
-        }
+    pub(super) fn column(&self, variable: Variable) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let index = variable.index;
+        let (slack, (rows, values)) = match variable.kind {
+            Kind::AtLower => (Some((index, -1.0)), (&[][..], &[][..])),
+            Kind::AtUpper => (Some((index, 1.0)), (&[][..], &[][..])),
+            Kind::Between => (None, self.m.column(index)),
+        };
+        let own = rows.iter().copied().zip(values.iter().copied());
+        slack.into_iter().chain(own)
     }
 }
 
@@ -58,15 +58,8 @@ pub(super) fn factorise(
 ) -> Option<Basis> {
     run.factorisations += 1;
     let mut b = Builder::new(slot.len());
-    for v in slot {
-        match v.kind {
-            Kind::AtLower => b.push(v.index, -1.0),
-            Kind::AtUpper => b.push(v.index, 1.0),
-            Kind::Between => {
-                let (rows, values) = problem.m.column(v.index);
-                rows.iter().zip(values).for_each(|(&i, &x)| b.push(i, x));
-            }
-        }
+    for &v in slot {
+        problem.column(v).for_each(|(i, x)| b.push(i, x));
         b.end_column();
     }
     Basis::new(&b.finish(), run.fill)
@@ -86,17 +79,9 @@ pub(super) fn solve_refined(
     let norm = right.iter().fold(0.0f64, |a, v| a.max(v.abs()));
     for step in 0..2 {
         let mut residual = right.clone();
-        for (v, &value) in slot.iter().zip(b.iter()) {
-            match v.kind {
-                Kind::AtLower => residual[v.index] += value,
-                Kind::AtUpper => residual[v.index] -= value,
-                Kind::Between => {
-                    let (rows, values) = problem.m.column(v.index);
-                    rows.iter()
-                        .zip(values)
-                        .for_each(|(&i, &m)| residual[i] -= m * value);
-                }
-            }
+        for (&v, &value) in slot.iter().zip(b.iter()) {
+            let column = problem.column(v);
+            column.for_each(|(i, m)| residual[i] -= m * value);
         }
         let worst = residual.iter().fold(0.0f64, |a, v| {
             if v.is_nan() {

@@ -24,6 +24,7 @@ use super::log;
 use super::merit::{phi, phi_slopes};
 use super::path::{HARRIS, HARRIS_CLOSE, PathEnd, PathResult, Start, follow};
 use super::run::{Point, Run, StallCounter, Stop};
+use crate::solve::vector::{dot, sum};
 
 /// Armijo constant of the M test and of the line search.
 const ARMIJO: f64 = 1e-4;
@@ -348,71 +349,51 @@ impl Majors {
     /// Starting states for the path, the likeliest first.
     fn starts(&self, run: &Run, level: usize) -> Vec<Start> {
         let x = &self.point.x;
-        let mut starts = Vec::new();
+        let start = |kind, cover| Start {
+            kind,
+            x: x.clone(),
+            cover,
+            tolerance: HARRIS,
+        };
+        let kinds = |of: &dyn Fn(usize) -> Kind| (0..run.n).map(of).collect::<Vec<_>>();
         let near = match &self.warm {
             Some(kind) => kind.clone(),
-            None => active_set(x, &self.point.f, &run.lower, &run.upper)
-                .iter()
-                .map(|s| match s {
+            None => {
+                let sets = active_set(x, &self.point.f, &run.lower, &run.upper);
+                kinds(&|i| match sets[i] {
                     -1 => Kind::AtLower,
                     1 => Kind::AtUpper,
                     _ => Kind::Between,
                 })
-                .collect(),
+            }
         };
-        starts.push(Start {
-            kind: near.clone(),
-            x: x.clone(),
-            cover: false,
-            tolerance: HARRIS,
-        });
+        let mut starts = vec![start(near.clone(), false)];
         if level == 0 {
             // The state of the normal map's variable z = x − F.
-            let kind: Vec<Kind> = (0..run.n)
-                .map(|i| {
-                    let z = x[i] - self.point.f[i];
-                    if z <= run.lower[i] {
-                        Kind::AtLower
-                    } else if z >= run.upper[i] {
-                        Kind::AtUpper
-                    } else {
-                        Kind::Between
-                    }
-                })
-                .collect();
+            let kind = kinds(&|i| match x[i] - self.point.f[i] {
+                z if z <= run.lower[i] => Kind::AtLower,
+                z if z >= run.upper[i] => Kind::AtUpper,
+                _ => Kind::Between,
+            });
             if kind != near {
-                starts.push(Start {
-                    kind,
-                    x: x.clone(),
-                    cover: false,
-                    tolerance: HARRIS,
-                });
+                starts.push(start(kind, false));
             }
         }
         // From the slacks the path is as long as the solution has variables off their bounds: the way
         // out where n is small, and the last resort where it is large.
-        if if run.n <= SLACK_START {
-            level <= 1
-        } else {
-            level == 4
-        } {
-            let kind = (0..run.n)
-                .map(|i| {
-                    if run.lower[i].is_finite() {
-                        Kind::AtLower
-                    } else if run.upper[i].is_finite() {
-                        Kind::AtUpper
-                    } else {
-                        Kind::Between
-                    }
-                })
-                .collect();
-            starts.push(Start {
-                kind,
-                x: x.clone(),
-                cover: true,
-                tolerance: HARRIS,
-            });
+        let from_slacks = match run.n <= SLACK_START {
+            true => level <= 1,
+            false => level == 4,
+        };
+        if from_slacks {
+            let kind = kinds(
+                &|i| match (run.lower[i].is_finite(), run.upper[i].is_finite()) {
+                    (true, _) => Kind::AtLower,
+                    (false, true) => Kind::AtUpper,
+                    (false, false) => Kind::Between,
+                },
+            );
+            starts.push(start(kind, true));
         }
         starts
     }
@@ -427,12 +408,7 @@ impl Majors {
         tries: usize,
     ) -> Result<bool, Stop> {
         let reference = self.reference(run);
-        let direction: Vec<f64> = candidate
-            .y
-            .iter()
-            .zip(&self.point.x)
-            .map(|(y, x)| y - x)
-            .collect();
+        let direction = sum(&candidate.y, -1.0, &self.point.x);
         if self.checkpoint.direction.is_none() {
             self.checkpoint.direction = Some(direction);
         }
@@ -493,14 +469,7 @@ impl Majors {
         if let Some(direction) = self.checkpoint.direction.take() {
             let mut step = 0.5;
             while step >= 1e-3 {
-                let mut x: Vec<f64> = self
-                    .checkpoint
-                    .point
-                    .x
-                    .iter()
-                    .zip(&direction)
-                    .map(|(x, d)| x + step * d)
-                    .collect();
+                let mut x = sum(&self.checkpoint.point.x, step, &direction);
                 run.clip(&mut x);
                 if let Some(next) = run.point(x)
                     && next.merit <= (1.0 - ARMIJO * step) * reference
@@ -541,19 +510,9 @@ impl Majors {
         }
         let mut step = 1.0;
         while step > 1e-12 {
-            let mut x: Vec<f64> = from
-                .x
-                .iter()
-                .zip(&gradient)
-                .map(|(x, g)| x - step * g)
-                .collect();
+            let mut x = sum(&from.x, -step, &gradient);
             run.clip(&mut x);
-            let fall: f64 = x
-                .iter()
-                .zip(&from.x)
-                .zip(&gradient)
-                .map(|((y, x), g)| (x - y) * g)
-                .sum();
+            let fall = dot(&sum(&from.x, -1.0, &x), &gradient);
             if let Some(next) = run.point(x)
                 && next.merit <= from.merit - ARMIJO * fall
                 && fall > 0.0

@@ -164,6 +164,25 @@ pub struct Outcome {
     pub message: String,
 }
 
+impl Outcome {
+    /// A point of which nothing is known but how the run ended.
+    fn at(x: Vec<f64>, status: Status) -> Self {
+        Self {
+            status,
+            f: vec![f64::NAN; x.len()],
+            x,
+            residual: f64::INFINITY,
+            majors: 0,
+            pivots: 0,
+            crash_iterations: 0,
+            factorisations: 0,
+            restarts: 0,
+            evaluations: 0,
+            message: String::new(),
+        }
+    }
+}
+
 /// Names of row i and of its variable, for the log.
 pub type Names<'a> = &'a dyn Fn(usize) -> String;
 

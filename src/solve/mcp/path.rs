@@ -112,44 +112,11 @@ enum Event {
     Ray,
 }
 
-/// Paths made from the end of one that lost its accuracy.
-const REPAIRS: u64 = 3;
-
 /// Follows the path. Pivots and factorisations are counted in `run`; `seed` feeds the shifts.
 ///
 /// "Solved" is checked: rounding errors, absorbed on the way, may leave a final basis whose exact
-/// solution violates bounds. Then, and when the basis became singular to rounding, a new path is
-/// started from the last state, which is close to the solution.
+/// solution violates bounds.
 pub(super) fn follow(
-    run: &mut Run,
-    problem: &LinearProblem,
-    start: &Start,
-    limit: usize,
-    seed: u64,
-) -> Result<PathResult, Stop> {
-    let mut result = follow_once(run, problem, start, limit, seed)?;
-    for repair in 1..=REPAIRS {
-        if result.end != PathEnd::Numerical || result.pivots == 0 || result.pivots >= limit {
-            break;
-        }
-        let again = Start {
-            kind: result.kind.clone(),
-            x: result.x.clone(),
-            cover: false,
-            tolerance: start.tolerance,
-        };
-        let left = limit - result.pivots;
-        let next = follow_once(run, problem, &again, left, seed + (repair << 32))?;
-        let pivots = result.pivots + next.pivots;
-        if next.end == PathEnd::Singular {
-            break;
-        }
-        result = PathResult { pivots, ..next };
-    }
-    Ok(result)
-}
-
-fn follow_once(
     run: &mut Run,
     problem: &LinearProblem,
     start: &Start,
@@ -374,7 +341,7 @@ impl<'a> Path<'a> {
             }
             Event::Flip(_) | Event::Ray => return Ok(PathEnd::Ray),
         };
-        let (mut direction, mut doubts) = (Sparse::new(), 0);
+        let (mut direction, mut doubts) = (Sparse::default(), 0);
         loop {
             run.pivots += 1;
             self.pivots += 1;
@@ -390,7 +357,7 @@ impl<'a> Path<'a> {
             if self.moved == 0 {
                 return Ok(PathEnd::Loop);
             }
-            let column = self.problem.column(entering);
+            let column: Sparse = self.problem.column(entering).collect();
             leaving = loop {
                 let old = self.basis.as_ref().is_none_or(Basis::is_old);
                 if old && !self.refactor(run) {
@@ -403,10 +370,8 @@ impl<'a> Path<'a> {
                     return Ok(PathEnd::Numerical);
                 }
                 let fresh = basis.updates() == 0;
-                let at_hole = direction
-                    .iter()
-                    .find(|(s, _)| *s == hole)
-                    .map_or(0.0, |d| d.1);
+                let at = |slot: usize| direction.iter().find(|d| d.0 == slot).map_or(0.0, |d| d.1);
+                let at_hole = at(hole);
                 let event = self.event(&direction, sign, hole, at_hole, entering);
                 match event {
                     Event::Ray => return Ok(PathEnd::Ray),
@@ -420,10 +385,7 @@ impl<'a> Path<'a> {
                         break (entering, sign > 0.0);
                     }
                     Event::Leave { slot, upper, step } => {
-                        let at_slot = direction
-                            .iter()
-                            .find(|(s, _)| *s == slot)
-                            .map_or(0.0, |d| d.1);
+                        let at_slot = at(slot);
                         let pivot = at_slot.abs().max(at_hole.abs());
                         if pivot < PIVOT_DOUBTFUL && !fresh {
                             doubts += 1;
@@ -660,169 +622,5 @@ impl<'a> Path<'a> {
             }
         }
         Some(x)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::factor::Builder;
-    use super::super::{Data, EvalError, Problem, Settings};
-    use super::*;
-    use crate::solve::{Budget, Quiet};
-    use feral::SparseColMatrix;
-
-    /// Something to count the factorisations of.
-    struct Nothing(Data);
-
-    impl Problem for Nothing {
-        fn data(&self) -> &Data {
-            &self.0
-        }
-        fn function(&mut self, _x: &[f64], _f: &mut [f64]) -> Result<(), EvalError> {
-            Ok(())
-        }
-        fn jacobian(&mut self, _x: &[f64], _values: &mut [f64]) -> Result<(), EvalError> {
-            Ok(())
-        }
-    }
-
-    fn nothing() -> Nothing {
-        Nothing(Data {
-            column_start: vec![0],
-            ..Data::default()
-        })
-    }
-
-    /// A strictly monotone matrix that is neither symmetric nor diagonally dominant.
-    fn matrix(n: usize) -> SparseColMatrix {
-        let mut random = Random::new(5);
-        let mut b = Builder::new(n);
-        let skew: Vec<f64> = (0..n).map(|_| random.between(-3.0, 3.0)).collect();
-        for j in 0..n {
-            for i in 0..n {
-                let value = match (
-                    i == j,
-                    i + 1 == j || j + 1 == i,
-                    i == (j + n / 2) % n || j == (i + n / 2) % n,
-                ) {
-                    (true, _, _) => 1.5,
-                    (_, true, _) => -0.5,
-                    (_, _, true) if i < j => skew[i],
-                    (_, _, true) => -skew[j],
-                    _ => continue,
-                };
-                b.push(i, value);
-            }
-            b.end_column();
-        }
-        b.finish()
-    }
-
-    /// max |Mx − w + v + t·r + q − r| at the current point of the path.
-    fn violation(path: &Path) -> f64 {
-        let mut value = path.rest.clone();
-        for (s, v) in path.slot.iter().enumerate() {
-            if Some(s) != path.hole {
-                value[v.index][v.kind as usize] = path.y[s] - path.t * path.p[s];
-            }
-        }
-        let x: Vec<f64> = value.iter().map(|v| v[0]).collect();
-        let mut left = vec![0.0; path.n];
-        path.problem.m.matvec(&x, &mut left);
-        (0..path.n)
-            .map(|k| {
-                left[k] - value[k][1] + value[k][2] + path.t * path.r[k] + path.problem.q[k]
-                    - path.r[k]
-            })
-            .fold(0.0, |a, v| f64::max(a, v.abs()))
-    }
-
-    #[test]
-    fn every_point_of_the_path_satisfies_the_linear_system() {
-        let n = 30;
-        let m = matrix(n);
-        let mut random = Random::new(9);
-        let q: Vec<f64> = (0..n).map(|_| random.between(-3.0, 2.0)).collect();
-        let lower: Vec<f64> = (0..n)
-            .map(|i| if i % 5 == 4 { f64::NEG_INFINITY } else { 0.0 })
-            .collect();
-        let upper: Vec<f64> = (0..n)
-            .map(|i| if i % 3 == 0 { 0.4 } else { f64::INFINITY })
-            .collect();
-        let problem = LinearProblem {
-            m: &m,
-            q: &q,
-            lower: &lower,
-            upper: &upper,
-        };
-        let kind: Vec<Kind> = lower
-            .iter()
-            .map(|l| {
-                if l.is_finite() {
-                    Kind::AtLower
-                } else {
-                    Kind::Between
-                }
-            })
-            .collect();
-        for cover in [false, true] {
-            let start = Start {
-                kind: kind.clone(),
-                x: vec![0.0; n],
-                cover,
-                tolerance: HARRIS,
-            };
-            let (settings, mut nothing) = (Settings::default(), nothing());
-            let mut quiet = Quiet::default();
-            let budget = Budget::unlimited(&mut quiet);
-            let mut run = Run::new(&mut nothing, &settings, &budget, &|_| String::new());
-            let mut solved = false;
-            for limit in 1..200 {
-                let mut path = Path::new(&problem, &start, 3);
-                let end = path.run(&mut run, limit).expect("no limit on time");
-                assert!(
-                    violation(&path) < 1e-9,
-                    "{} after {limit} pivots",
-                    violation(&path)
-                );
-                if end == PathEnd::Solved {
-                    let x = path.solution(&mut run).expect("a regular basis");
-                    assert!(limit > 5 && solves(&problem, &x));
-                    solved = true;
-                    break;
-                }
-                assert_eq!(end, PathEnd::Limit);
-            }
-            assert!(solved);
-        }
-    }
-
-    #[test]
-    fn a_problem_without_solution_ends_in_a_ray() {
-        let m = SparseColMatrix {
-            m: 1,
-            col_ptr: vec![0, 1],
-            row_idx: vec![0],
-            values: vec![-1.0],
-        };
-        let problem = LinearProblem {
-            m: &m,
-            q: &[-1.0],
-            lower: &[0.0],
-            upper: &[f64::INFINITY],
-        };
-        let start = Start {
-            kind: vec![Kind::AtLower],
-            x: vec![0.0],
-            cover: true,
-            tolerance: HARRIS,
-        };
-        let (settings, mut nothing) = (Settings::default(), nothing());
-        let mut quiet = Quiet::default();
-        let budget = Budget::unlimited(&mut quiet);
-        let mut run = Run::new(&mut nothing, &settings, &budget, &|_| String::new());
-        let result = follow(&mut run, &problem, &start, 100, 1).expect("no limit on time");
-        assert_eq!(result.end, PathEnd::Ray);
-        assert!(run.pivots <= 3);
     }
 }

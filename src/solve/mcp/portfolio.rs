@@ -33,19 +33,16 @@ pub(super) fn solve(
         );
         budget.log(&line);
     }
-    let (end, restarts) = search(&mut run);
+    let mut restarts = 0;
+    let end = search(&mut run, &mut restarts);
     let mut outcome = Outcome {
-        status: Status::NoSolution,
-        x: Vec::new(),
-        f: Vec::new(),
-        residual: f64::INFINITY,
         majors: run.majors,
         pivots: run.pivots,
         crash_iterations: run.crash_iterations,
         factorisations: run.factorisations,
         restarts,
         evaluations: run.evaluations + 1,
-        message: String::new(),
+        ..Outcome::at(Vec::new(), Status::NoSolution)
     };
     let evaluated = run.best.is_some();
     let error = run.last_error.take();
@@ -120,14 +117,8 @@ fn judge(
     worst
 }
 
-/// Runs the methods until one succeeds; the best point is left in the run. Returns the restarts made.
-fn search(run: &mut Run) -> (Result<(), Stop>, usize) {
-    let mut restarts = 0;
-    let end = attempt(run, &mut restarts);
-    (end, restarts)
-}
-
-fn attempt(run: &mut Run, restarts: &mut usize) -> Result<(), Stop> {
+/// Runs the methods until one succeeds; the best point is left in the run. Counts the restarts made.
+fn search(run: &mut Run, restarts: &mut usize) -> Result<(), Stop> {
     if run.n == 0 {
         run.point(Vec::new());
         return Ok(());
@@ -272,16 +263,7 @@ fn invalid(problem: &dyn Problem) -> Option<Outcome> {
         return None;
     };
     Some(Outcome {
-        status,
-        x: data.start.clone(),
-        f: vec![f64::NAN; n],
-        residual: f64::INFINITY,
-        majors: 0,
-        pivots: 0,
-        crash_iterations: 0,
-        factorisations: 0,
-        restarts: 0,
-        evaluations: 0,
         message,
+        ..Outcome::at(data.start.clone(), status)
     })
 }

@@ -8,6 +8,7 @@ use super::fixed::Reduced;
 use super::merit::{merit, natural_residual};
 use super::{EvalError, INFINITY, Names, Problem, Settings};
 pub(super) use crate::solve::budget::Stop;
+use crate::solve::vector::clip;
 use crate::solve::{Budget, Progress};
 
 /// A point with its function values.
@@ -132,9 +133,7 @@ impl<'a, 'm> Run<'a, 'm> {
 
     /// x clipped to the bounds.
     pub(super) fn clip(&self, x: &mut [f64]) {
-        for (x, (&l, &u)) in x.iter_mut().zip(self.lower.iter().zip(&self.upper)) {
-            *x = x.max(l).min(u);
-        }
+        clip(x, (&self.lower, &self.upper));
     }
 
     /// Evaluates F at x. None if that is not possible or a value is not finite.

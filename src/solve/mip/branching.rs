@@ -164,18 +164,7 @@ impl<R: Relaxation> Search<'_, R> {
             true => (0.0, self.mip.threshold[j]),
             false => (x.floor(), x.ceil()),
         };
-        [
-            Change {
-                column: j,
-                lower: l,
-                upper: low,
-            },
-            Change {
-                column: j,
-                lower: high,
-                upper: u,
-            },
-        ]
+        [Change::new(j, l, low), Change::new(j, high, u)]
     }
 
     fn mean_gain(&self) -> [f64; 2] {
@@ -282,11 +271,7 @@ impl<R: Relaxation> Search<'_, R> {
             let at = (middle.floor() as usize).clamp(first, last - 1);
             (at + 1, at + 1)
         };
-        let zero = |k: usize| Change {
-            column: set.columns[k] as usize,
-            lower: 0.0,
-            upper: 0.0,
-        };
+        let zero = |k: usize| Change::new(set.columns[k] as usize, 0.0, 0.0);
         let open = |k: &usize| self.is_open(set.columns[*k] as usize);
         let low = (left..set.columns.len()).filter(open).map(zero).collect();
         let high = (0..right).filter(open).map(zero).collect();
@@ -349,18 +334,7 @@ impl<R: Relaxation> Search<'_, R> {
             (true, false) => l.max(near),
             _ => (u - 1.0).min(near),
         };
-        let sides = [
-            vec![Change {
-                column: j,
-                lower: l,
-                upper: at,
-            }],
-            vec![Change {
-                column: j,
-                lower: at + 1.0,
-                upper: u,
-            }],
-        ];
+        let sides = [Change::new(j, l, at), Change::new(j, at + 1.0, u)].map(|c| vec![c]);
         Some(Branch::Two {
             sides,
             column: None,

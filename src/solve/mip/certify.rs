@@ -10,7 +10,7 @@
 use super::model::{Change, Mip};
 use super::relaxation::Control;
 use crate::model::instance::Instance;
-use crate::solve::lp::certify::Proof;
+use crate::solve::lp::certify::{Proof, Unproved};
 use crate::solve::lp::form::{Form, Point, Problem};
 use crate::solve::lp::simplex::{Basis, Simplex};
 use crate::solve::lp::{self, Ended};
@@ -88,11 +88,7 @@ fn prove(
     };
     let bound = lowest(&mip, reached, &slowly, &mut control);
     let why = "the search for a proof was cut short, or numbers broke down in it";
-    let missing = (bound == f64::NEG_INFINITY).then_some(crate::solve::lp::certify::Unproved {
-        why,
-        row: None,
-        column: None,
-    });
+    let missing = (bound == f64::NEG_INFINITY).then(|| Unproved::new(why));
     if form.sign > 0.0 {
         (proof.low, proof.no_low) = (bound, missing);
     } else {
@@ -209,30 +205,14 @@ fn branches(mip: &Mip, p: &Problem, x: &[f64], solved: bool) -> Vec<Vec<Change>>
     let best = all.max_by(|a, b| doubt(a).total_cmp(&doubt(b)));
     if let Some(j) = best.filter(|j| doubt(j) > 1e-9) {
         if threshold(&j) && (x[j] < mip.threshold[j] || !mip.integer[j]) {
-            let low = Change {
-                column: j,
-                lower: 0.0,
-                upper: 0.0,
-            };
-            let high = Change {
-                column: j,
-                lower: mip.threshold[j],
-                upper: p.upper[j],
-            };
+            let low = Change::new(j, 0.0, 0.0);
+            let high = Change::new(j, mip.threshold[j], p.upper[j]);
             return vec![vec![low], vec![high]];
         }
         if mip.integer[j] {
             let at = x[j].max(p.lower[j]).min(p.upper[j] - 1.0).floor();
-            let low = Change {
-                column: j,
-                lower: p.lower[j],
-                upper: at,
-            };
-            let high = Change {
-                column: j,
-                lower: at + 1.0,
-                upper: p.upper[j],
-            };
+            let low = Change::new(j, p.lower[j], at);
+            let high = Change::new(j, at + 1.0, p.upper[j]);
             return vec![vec![low], vec![high]];
         }
     }
@@ -252,11 +232,7 @@ fn branches(mip: &Mip, p: &Problem, x: &[f64], solved: bool) -> Vec<Vec<Change>>
     });
     let worst = undecided.max_by(|a, b| a.0.total_cmp(&b.0));
     if let Some((_, set, first, last)) = worst {
-        let zero = |&j: &u32| Change {
-            column: j as usize,
-            lower: 0.0,
-            upper: 0.0,
-        };
+        let zero = |&j: &u32| Change::new(j as usize, 0.0, 0.0);
         let middle = (first + last) / 2;
         // Two neighbours share their middle: both parts keep it.
         let middle = middle.max(first + usize::from(set.neighbours));

@@ -67,7 +67,7 @@ impl Linear {
             return false;
         }
         let old = std::mem::take(&mut self.problem.rows);
-        self.problem.rows = crate::solve::lp::form::Sparse::new();
+        self.problem.rows = crate::solve::lp::form::Sparse::default();
         let (mut lower, mut upper) = (Vec::new(), Vec::new());
         basis.truncate(self.n);
         let states = self.simplex.basis();

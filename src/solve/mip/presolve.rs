@@ -144,17 +144,11 @@ impl Alike {
 
     /// What is still open is put in.
     fn put_in(mut self, mip: &mut Mip) -> Vec<Given> {
-        let p = &mut mip.problem;
+        let p = &mip.problem;
         let is_open = |j: usize| p.lower[j] < p.upper[j];
         self.given
             .retain(|g| is_open(g.column) && is_open(g.terms[0].0));
-        for g in &self.given {
-            if let Some(&first) = mip.priority.get(g.column) {
-                let by = g.terms[0].0;
-                mip.priority[by] = mip.priority[by].min(first);
-            }
-        }
-        put_in(p, &self.given);
+        put_in(mip, &self.given);
         self.given
     }
 }
@@ -220,9 +214,6 @@ fn pairs(mip: &mut Mip, idle: &mut [bool], stays: &[bool]) -> Option<Vec<Given>>
             return None;
         }
         (p.lower[by.0], p.upper[by.0]) = if l > u { (u, u) } else { (l, u) };
-        if let Some(&first) = mip.priority.get(gone.0) {
-            mip.priority[by.0] = mip.priority[by.0].min(first);
-        }
         (taken[gone.0], taken[by.0], *idle) = (true, true, true);
         given.push(Given {
             column: gone.0,
@@ -230,7 +221,7 @@ fn pairs(mip: &mut Mip, idle: &mut [bool], stays: &[bool]) -> Option<Vec<Given>>
             terms: vec![(by.0, factor)],
         });
     }
-    put_in(&mut mip.problem, &given);
+    put_in(mip, &given);
     Some(given)
 }
 
@@ -345,13 +336,7 @@ fn twins(mip: &mut Mip, idle: &mut [bool], stays: &[bool]) -> Vec<Given> {
         });
     }
     gone_rows.into_iter().for_each(|i| idle[i] = true);
-    for g in &given {
-        let by = g.terms[0].0;
-        if let Some(&first) = mip.priority.get(g.column) {
-            mip.priority[by] = mip.priority[by].min(first);
-        }
-    }
-    put_in(&mut mip.problem, &given);
+    put_in(mip, &given);
     given
 }
 
@@ -394,11 +379,18 @@ fn is_multiple(p: &Problem, rows: [usize; 2], columns: [usize; 2], own: [f64; 2]
     same(second[0], low) && same(second[1], high)
 }
 
-/// Columns in terms of the one that gives each, in rows and costs.
-fn put_in(p: &mut Problem, given: &[Given]) {
+/// Columns in terms of the one that gives each, in rows and costs, and in the order of branching.
+fn put_in(mip: &mut Mip, given: &[Given]) {
     if given.is_empty() {
         return;
     }
+    for g in given {
+        if let Some(&first) = mip.priority.get(g.column) {
+            let by = g.terms[0].0;
+            mip.priority[by] = mip.priority[by].min(first);
+        }
+    }
+    let p = &mut mip.problem;
     let mut of = vec![None; p.n()];
     for g in given {
         of[g.column] = Some((g, g.terms[0]));
@@ -407,7 +399,7 @@ fn put_in(p: &mut Problem, given: &[Given]) {
         p.cost[g.column] = 0.0;
         (p.lower[g.column], p.upper[g.column]) = (0.0, 0.0);
     }
-    let old = std::mem::replace(&mut p.rows, Sparse::new());
+    let old = std::mem::replace(&mut p.rows, Sparse::default());
     for i in 0..old.lines() {
         let mut entries: Vec<(usize, f64)> = Vec::new();
         for (j, a) in old.line(i) {
@@ -538,31 +530,11 @@ fn assemble(work: &Mip, idle: &[bool], stays: &[bool]) -> Reduced {
     let values: Vec<f64> = (0..n)
         .map(|j| if open(j) { 0.0 } else { p.lower[j] })
         .collect();
-    let mut problem = Problem {
-        rows: Sparse::new(),
-        offset: p.offset + p.cost.iter().zip(&values).map(|(c, x)| c * x).sum::<f64>(),
-        ..Problem::default()
-    };
-    for i in (0..p.m()).filter(|&i| !idle[i]) {
-        let moved: f64 = p.rows.line(i).map(|(j, a)| a * values[j]).sum();
-        let kept: Vec<(usize, f64)> = p
-            .rows
-            .line(i)
-            .filter(|e| open(e.0) && e.1 != 0.0)
-            .map(|(j, a)| (number[j] as usize, a))
-            .collect();
-        if kept.is_empty() {
-            continue;
-        }
-        problem.row_lower.push(p.row_lower[i] - moved);
-        problem.row_upper.push(p.row_upper[i] - moved);
-        problem.rows.push(kept);
-    }
-    let pick = |v: &[f64]| columns.iter().map(|&j| v[j as usize]).collect::<Vec<f64>>();
-    problem.cost = pick(&p.cost);
-    problem.lower = pick(&p.lower);
-    problem.upper = pick(&p.upper);
-    problem.columns = problem.rows.transpose(columns.len());
+    let kept: Vec<usize> = columns.iter().map(|&j| j as usize).collect();
+    let says = |i: &usize| p.rows.line(*i).any(|e| open(e.0) && e.1 != 0.0);
+    let rows: Vec<usize> = (0..p.m()).filter(|&i| !idle[i]).filter(says).collect();
+    let problem = p.part(&kept, &rows, &values);
+    let pick = |v: &[f64]| kept.iter().map(|&j| v[j]).collect::<Vec<f64>>();
     let mut sets = Vec::new();
     for set in &work.sets {
         sets.push(OrderedSet {

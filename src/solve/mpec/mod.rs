@@ -281,17 +281,7 @@ impl Search<'_, '_> {
         self.branch_from(None, pieces, start, u64::MAX)
     }
 
-    /// The same, in so many iterations.
-    fn branch_within(
-        &mut self,
-        pieces: Vec<Piece>,
-        start: &[f64],
-        most: u64,
-    ) -> Result<Option<Found>, SolveError> {
-        self.branch_from(None, pieces, start, most)
-    }
-
-    /// The same for a linear program whose optimal basis may be known.
+    /// The same in so many iterations, and for a linear program whose optimal basis may be known.
     fn branch_from(
         &mut self,
         basis: Option<&Basis>,

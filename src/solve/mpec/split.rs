@@ -16,7 +16,7 @@
 
 use super::pairs::{Pair, Piece, Program};
 use crate::solve::lp::Ended;
-use crate::solve::lp::form::{Problem, Sparse};
+use crate::solve::lp::form::Problem;
 use crate::solve::lp::simplex::{Basis, Simplex};
 
 /// A value this close to a bound is on it. Simplex solutions have their nonbasic variables exactly
@@ -171,8 +171,7 @@ pub fn sides(program: &Program) -> Option<Vec<bool>> {
     for i in 0..m {
         for (j, _) in instance.matrix.row(i) {
             if instance.columns.lower[j] < instance.columns.upper[j] {
-                let (a, b) = (root(&mut parent, j), root(&mut parent, n + i));
-                parent[a] = b;
+                join(&mut parent, j, n + i);
             }
         }
     }
@@ -207,6 +206,12 @@ pub fn sides(program: &Program) -> Option<Vec<bool>> {
     Some((0..n + m).map(on_a).collect())
 }
 
+/// Unites the sets of two members.
+pub(super) fn join(parent: &mut [usize], a: usize, b: usize) {
+    let (a, b) = (root(parent, a), root(parent, b));
+    parent[a] = b;
+}
+
 /// The representative of k's set in a union of disjoint sets.
 pub(super) fn root(parent: &mut [usize], mut k: usize) -> usize {
     while parent[k] != k {
@@ -229,36 +234,9 @@ impl Side {
             .enumerate()
             .for_each(|(k, &j)| column_at[j] = k);
         rows.iter().enumerate().for_each(|(k, &i)| row_at[i] = k);
-        let pick = |v: &[f64]| -> Vec<f64> { columns.iter().map(|&j| v[j]).collect() };
-        let mut problem = Problem {
-            cost: vec![0.0; columns.len()],
-            lower: pick(&instance.columns.lower),
-            upper: pick(&instance.columns.upper),
-            rows: Sparse::new(),
-            ..Problem::default()
-        };
-        if let Some(o) = instance.objective
-            && column_at[o.column as usize] != usize::MAX
-        {
-            problem.cost[column_at[o.column as usize]] = program.sign();
-        }
-        for &i in &rows {
-            // Fixed columns of the other side are constants here.
-            let mut constant = 0.0;
-            let mut entries = Vec::new();
-            for (j, a) in instance.matrix.row(i) {
-                match column_at[j] {
-                    usize::MAX => constant += a * instance.columns.lower[j],
-                    k => entries.push((k, a)),
-                }
-            }
-            problem.rows.push(entries);
-            let b = instance.rows.rhs[i] - constant;
-            let [lo, hi] = instance.rows.relation[i].bounds(b);
-            problem.row_lower.push(lo);
-            problem.row_upper.push(hi);
-        }
-        problem.columns = problem.rows.transpose(columns.len());
+        // Fixed columns of the other side are constants here.
+        let whole = whole(program);
+        let problem = whole.part(&columns, &rows, &whole.lower);
         // F is the activity minus this, which stands in the row's bounds where they are finite.
         let has_row: Vec<bool> = program
             .pairs
@@ -296,11 +274,24 @@ fn engine(problem: &Problem) -> Simplex {
 
 /// The whole envelope of a linear program, rows and columns in their order.
 pub fn whole(program: &Program) -> Problem {
-    let (m, n) = (
-        program.envelope.row_count(),
-        program.envelope.column_count(),
-    );
-    Side::new(program, &vec![true; n + m], true).problem
+    let instance = &program.envelope;
+    let mut out = Problem {
+        cost: vec![0.0; instance.column_count()],
+        lower: instance.columns.lower.clone(),
+        upper: instance.columns.upper.clone(),
+        ..Problem::default()
+    };
+    if let Some(o) = instance.objective {
+        out.cost[o.column as usize] = program.sign();
+    }
+    for (i, &rhs) in instance.rows.rhs.iter().enumerate() {
+        let [lo, hi] = instance.rows.relation[i].bounds(rhs);
+        out.row_lower.push(lo);
+        out.row_upper.push(hi);
+        out.rows.push(instance.matrix.row(i));
+    }
+    out.columns = out.rows.transpose(out.n());
+    out
 }
 
 /// Right-hand sides of the pairs' rows, for [`Side::solve`].

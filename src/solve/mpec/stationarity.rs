@@ -19,12 +19,12 @@
 //! above 0. Ten pairs that do not meet then cost ten times three nodes, not 2¹⁰.
 
 use super::pairs::{Pair, Piece, Program};
-use super::split::root;
+use super::split::{join, root};
 use super::tree::{Limits, Lpcc};
 use crate::autodiff::Evaluator;
 use crate::model::instance::Relation;
 use crate::solve::lp::Ended;
-use crate::solve::lp::form::{Problem, Sparse};
+use crate::solve::lp::form::Problem;
 
 /// What is closer to a bound than this, relative to its size, is on it.
 const ACTIVE: f64 = 1e-6;
@@ -149,10 +149,11 @@ impl Part {
     /// The parts in which the objective can fall.
     fn all(problem: &Problem, pairs: &[Pair], defined: Option<&Defined>) -> Vec<Self> {
         let (m, n) = (problem.m(), problem.n());
-        let mut cost = problem.cost.clone();
+        let mut problem = problem.clone();
         if let Some(z) = defined {
+            let price = problem.cost[z.column];
             for (j, a) in problem.rows.line(z.row) {
-                cost[j] -= problem.cost[z.column] * a / z.coefficient;
+                problem.cost[j] -= price * a / z.coefficient;
             }
         }
         let leaves = |j: usize| problem.lower[j] == problem.upper[j];
@@ -163,18 +164,16 @@ impl Part {
         pairs.iter().for_each(|p| active[p.row] = true);
         defined.iter().for_each(|z| active[z.row] = false);
         let mut parent: Vec<usize> = (0..n + m).collect();
-        let mut join = |a: usize, b: usize| {
-            let (a, b) = (root(&mut parent, a), root(&mut parent, b));
-            parent[a] = b;
-        };
         for i in (0..m).filter(|&i| active[i]) {
             let moving = problem.rows.line(i).filter(|e| !leaves(e.0));
-            moving.for_each(|(j, _)| join(j, n + i));
+            moving.for_each(|(j, _)| join(&mut parent, j, n + i));
         }
-        pairs.iter().for_each(|p| join(p.column, n + p.row));
+        pairs
+            .iter()
+            .for_each(|p| join(&mut parent, p.column, n + p.row));
         let mut number = vec![usize::MAX; n + m];
         let mut parts: Vec<(Vec<usize>, Vec<usize>)> = Vec::new();
-        for j in (0..n).filter(|&j| cost[j] != 0.0 && !leaves(j)) {
+        for j in (0..n).filter(|&j| problem.cost[j] != 0.0 && !leaves(j)) {
             let r = root(&mut parent, j);
             if number[r] == usize::MAX {
                 number[r] = parts.len();
@@ -197,23 +196,9 @@ impl Part {
         }
         let mut out: Vec<Self> = Vec::new();
         for (columns, rows) in parts {
-            let pick = |v: &[f64], at: &[usize]| at.iter().map(|&k| v[k]).collect::<Vec<f64>>();
-            let mut lines = Sparse::new();
-            for &i in &rows {
-                let moving = problem.rows.line(i).filter(|e| !leaves(e.0));
-                lines.push(moving.map(|(j, a)| (place[j], a)));
-            }
             out.push(Self {
-                problem: Problem {
-                    cost: pick(&cost, &columns),
-                    lower: pick(&problem.lower, &columns),
-                    upper: pick(&problem.upper, &columns),
-                    row_lower: pick(&problem.row_lower, &rows),
-                    row_upper: pick(&problem.row_upper, &rows),
-                    columns: lines.transpose(columns.len()),
-                    rows: lines,
-                    offset: 0.0,
-                },
+                // what leaves is fixed at 0
+                problem: problem.part(&columns, &rows, &problem.lower),
                 pairs: Vec::new(),
                 columns,
             });
@@ -247,7 +232,6 @@ fn linearise(program: &Program, level: &[f64]) -> Option<(Problem, Vec<Pair>, Ve
     let inf = f64::INFINITY;
     let mut p = Problem {
         cost: vec![0.0; n],
-        rows: Sparse::new(),
         ..Problem::default()
     };
     let objective = instance.objective.map(|o| o.column as usize);

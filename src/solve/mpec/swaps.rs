@@ -45,7 +45,7 @@ impl Search<'_, '_> {
                 let mut pieces = best.pieces.clone();
                 pieces[k] = piece;
                 let level = &best.outcome.level;
-                if let Some(found) = self.branch_within(pieces, level, SHORT)?
+                if let Some(found) = self.branch_from(None, pieces, level, SHORT)?
                     && found.objective < best.objective - 1e-9 * best.objective.abs().max(1.0)
                 {
                     self.descend(found)?;

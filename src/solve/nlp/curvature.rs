@@ -15,6 +15,7 @@ use super::polish::number;
 use super::problem::{Entry, Problem};
 use super::symmetric::{Lower, Symmetric};
 use crate::solve::random::Random;
+use crate::solve::vector::dot;
 
 /// Steps of Lanczos's method at most.
 const STEPS: usize = 60;
@@ -141,10 +142,6 @@ impl Projection {
         }
         Some(())
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 
 /// Smallest Ritz value, largest magnitude of a Ritz value, and the vector of the smallest.

@@ -71,17 +71,7 @@ pub fn solve(
     budget: &Budget,
 ) -> Result<Outcome, SolveError> {
     let instance = task.instance;
-    let columns = &instance.columns;
-    for j in 0..instance.column_count() {
-        let (l, u) = (columns.lower[j], columns.upper[j]);
-        if l > u || l.is_nan() || u.is_nan() {
-            return Err(SolveError {
-                message: format!("the lower bound {l} is above the upper bound {u}"),
-                row: None,
-                column: Some(j),
-            });
-        }
-    }
+    lp::form::validate(instance)?;
     let mut problem = Problem::new(instance);
     problem.seen = task.seen.cloned();
     if settings.switch("warm_start_init_point") == Some(true) {
@@ -262,11 +252,9 @@ fn check_start(
 }
 
 fn start_failure(e: &EvalFailure) -> SolveError {
-    SolveError {
-        message: format!("a function cannot be evaluated at the start point: {e}"),
-        row: Some(e.row as usize),
-        column: e.column.map(|j| j as usize),
-    }
+    let (row, column) = (e.row as usize, e.column.map(|j| j as usize));
+    let message = format!("a function cannot be evaluated at the start point: {e}");
+    SolveError::at(Some(row), column, message)
 }
 
 pub(super) struct Driver<'a, 'm> {

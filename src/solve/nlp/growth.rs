@@ -17,6 +17,7 @@ use super::schedule::From;
 use super::slqp::Effort;
 use super::trial::{CONSIDERABLE, FAR, Trial};
 use crate::model::instance::Instance;
+use crate::solve::vector::clip;
 use crate::solve::{SolveError, Strategy};
 
 /// Half the widths R of the boxes.
@@ -123,9 +124,8 @@ impl Driver<'_, '_> {
             }
         }
         let mut problem = Problem::new(&instance);
-        let (lower, upper) = problem.bounds();
-        let inside = start.iter().zip(lower.iter().zip(upper));
-        let start = inside.map(|(x, (&l, &u))| x.max(l).min(u)).collect();
+        let mut start = start.to_vec();
+        clip(&mut start, problem.bounds());
         problem.start = start;
         let (interior_point, settings) = (self.interior_point, self.settings);
         let mut inner = Driver::new(&instance, problem, interior_point, settings, self.budget);

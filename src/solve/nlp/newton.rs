@@ -24,6 +24,7 @@
 use super::path::end_of_path;
 use super::problem::{Entry, Problem};
 use super::symmetric::{Lower, Places, Symmetric};
+use crate::solve::vector::{clip, sum};
 use faer::linalg::solvers::Solve;
 use faer::sparse::linalg::solvers::Lu;
 use faer::sparse::{SparseColMat, Triplet};
@@ -180,10 +181,9 @@ fn nearer(
 
 /// x + t d, put into the bounds.
 pub(super) fn moved(nlp: &Problem, x: &[f64], d: &[f64], t: f64) -> Vec<f64> {
-    let (lower, upper) = nlp.bounds();
-    let all = x.iter().zip(d).zip(lower.iter().zip(upper));
-    all.map(|((x, d), (&l, &u))| (x + t * d).max(l).min(u))
-        .collect()
+    let mut there = sum(x, t, d);
+    clip(&mut there, nlp.bounds());
+    there
 }
 
 /// What the constraints are violated by: positive above, negative below.

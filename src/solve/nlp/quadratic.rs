@@ -146,7 +146,7 @@ pub(super) fn nearest(problem: &mut Problem, x: &[f64], budget: &Budget) -> Opti
 
 /// Rows from entries ordered by row.
 pub(super) fn by_rows(m: usize, entries: &[Entry]) -> Sparse {
-    let mut out = Sparse::new();
+    let mut out = Sparse::default();
     let mut lines = entries.chunk_by(|a, b| a.0 == b.0).peekable();
     for i in 0..m {
         let line = lines.next_if(|l| l[0].0 == i).unwrap_or_default();

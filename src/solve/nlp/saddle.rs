@@ -15,6 +15,7 @@ use super::schedule::FINEST;
 use super::slqp::Effort;
 use super::trial::{Trial, active_set};
 use crate::model::instance::Relation;
+use crate::solve::vector::{clip, largest, sum};
 use crate::solve::{SolveError, Strategy};
 
 /// How often a saddle is left.
@@ -169,13 +170,13 @@ impl Driver<'_, '_> {
         for (i, j, a) in problem.jacobian_entries(x)? {
             reduced[j] += lambda[i] * a;
         }
-        let largest = lambda.iter().fold(0.0_f64, |s, l| s.max(l.abs()));
+        let most = largest(lambda);
         let (lower, upper) = problem.bounds();
         let fixed: Vec<bool> = (0..n)
-            .map(|j| (x[j] <= lower[j] || x[j] >= upper[j]) && reduced[j].abs() > WEAK * largest)
+            .map(|j| (x[j] <= lower[j] || x[j] >= upper[j]) && reduced[j].abs() > WEAK * most)
             .collect();
         let binding: Vec<bool> = (0..m)
-            .map(|i| missed(i, g[i]) <= MET && lambda[i].abs() > WEAK * largest)
+            .map(|i| missed(i, g[i]) <= MET && lambda[i].abs() > WEAK * most)
             .collect();
         let d = negative_curvature(&mut problem, x, (0.0, lambda), &fixed, &binding)?;
         if !self.settings.runs(Strategy::ViolationCurvature) {
@@ -261,7 +262,6 @@ fn downhill(
     sides: &[InnerSide],
 ) -> Option<Vec<f64>> {
     let (lower, upper) = (problem.bounds().0.to_vec(), problem.bounds().1.to_vec());
-    let largest = |v: &[f64]| v.iter().fold(0.0_f64, |s, v| s.max(v.abs()));
     let here = value(problem, x)?;
     let noticeable = NOTICEABLE * here.abs().max(1.0);
     let mut best: Option<(f64, Vec<f64>)> = None;
@@ -274,9 +274,9 @@ fn downhill(
         }
         let unit = largest(x).max(1.0) / length;
         let along = |t: f64| -> Vec<f64> {
-            let each = x.iter().zip(&d).zip(lower.iter().zip(&upper));
-            each.map(|((x, d), (&l, &u))| (x + t * unit * d).max(l).min(u))
-                .collect()
+            let mut y = sum(x, t * unit, &d);
+            clip(&mut y, (&lower, &upper));
+            y
         };
         let mut reached: Option<(f64, f64, Vec<f64>)> = None;
         for t in FIRST_STEPS {

@@ -9,6 +9,7 @@ pub(super) use crate::solve::certificate::nonlinear::{CONSIDERABLE, FAR};
 use crate::solve::certificate::nonlinear::{is_feasible_only_by_scaling, measure};
 use crate::solve::certificate::{Linearised, Residuals, TOLERANCE, row_violation};
 use crate::solve::noise::{LEVELS, snap};
+use crate::solve::vector::clip;
 
 /// A point that was judged.
 #[derive(Clone)]
@@ -298,9 +299,7 @@ pub(super) fn polished(
     if !polish(problem, &active, &target, &mut x, &mut lambda) {
         return None;
     }
-    for (v, (&l, &u)) in x.iter_mut().zip(lower.iter().zip(&upper)) {
-        *v = v.max(l).min(u);
-    }
+    clip(&mut x, (&lower, &upper));
     Some(residuals_at(instance, problem, kinks, x, lambda, t.ended))
 }
 

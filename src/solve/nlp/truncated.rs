@@ -12,6 +12,7 @@
 
 use super::problem::{Entry, Problem};
 use crate::solve::random::Random;
+use crate::solve::vector::{clip, dot, largest, sum};
 use crate::solve::{Budget, Progress};
 use std::cell::Cell;
 
@@ -136,10 +137,10 @@ impl Model {
                 diagonal[i] += h;
             }
         }
-        let largest = diagonal.iter().fold(0.0_f64, |s, d| s.max(d.abs()));
-        let least = if largest > 0.0 { 1e-8 * largest } else { 1.0 };
+        let size = largest(&diagonal);
+        let least = if size > 0.0 { 1e-8 * size } else { 1.0 };
         diagonal.iter_mut().for_each(|d| *d = d.abs().max(least));
-        let finite = gradient.iter().all(|g| g.is_finite()) && largest.is_finite();
+        let finite = gradient.iter().all(|g| g.is_finite()) && size.is_finite();
         finite.then(|| Self {
             x: x.to_vec(),
             gradient,
@@ -295,7 +296,6 @@ impl Model {
         f: f64,
     ) -> Option<(Vec<f64>, f64)> {
         let d = self.downwards(nlp, bounds)?;
-        let largest = |v: &[f64]| v.iter().fold(0.0_f64, |s, v| s.max(v.abs()));
         let unit = largest(&self.x).max(1.0) / largest(&d);
         let ways = FIRST_STEPS.into_iter().flat_map(|t| [t, -t]);
         let mut ends = ways.filter_map(|t| {
@@ -356,16 +356,8 @@ impl Model {
     }
 }
 
-fn clipped(x: &[f64], (lower, upper): (&[f64], &[f64])) -> Vec<f64> {
-    let all = x.iter().zip(lower.iter().zip(upper));
-    all.map(|(x, (&l, &u))| x.max(l).min(u)).collect()
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-/// a + t b
-fn sum(a: &[f64], t: f64, b: &[f64]) -> Vec<f64> {
-    a.iter().zip(b).map(|(a, b)| a + t * b).collect()
+fn clipped(x: &[f64], bounds: (&[f64], &[f64])) -> Vec<f64> {
+    let mut x = x.to_vec();
+    clip(&mut x, bounds);
+    x
 }

@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 use super::Finding;
 use crate::model::instance::Instance;
 use crate::solve::Budget;
-use crate::solve::lp::form::{Form, Problem, Sparse};
+use crate::solve::lp::form::{Form, Problem};
 use crate::solve::lp::scale::Scaling;
 use crate::solve::lp::simplex::Simplex;
 use crate::solve::lp::{Ended, watch};
@@ -163,8 +163,6 @@ fn test(p: &Problem, set: &BTreeSet<Member>, budget: &Budget) -> Tested {
         return Tested::Unknown;
     }
     // Only what the members touch.
-    let mut number = vec![usize::MAX; p.n()];
-    let mut columns = Vec::new();
     let rows: Vec<usize> = set
         .iter()
         .filter_map(|m| match *m {
@@ -172,41 +170,24 @@ fn test(p: &Problem, set: &BTreeSet<Member>, budget: &Budget) -> Tested {
             _ => None,
         })
         .collect();
-    let mut sub = Problem {
-        rows: Sparse::new(),
-        ..Problem::default()
-    };
-    let mut see = |j: usize, columns: &mut Vec<usize>| {
-        if number[j] == usize::MAX {
-            number[j] = columns.len();
-            columns.push(j);
+    let bounded = set.iter().filter_map(|m| match *m {
+        Member::Lower(j) | Member::Upper(j) => Some(j),
+        Member::Row(_) => None,
+    });
+    let of_rows = rows.iter().flat_map(|&i| p.rows.line(i).map(|e| e.0));
+    let mut known = vec![false; p.n()];
+    let mut columns: Vec<usize> = of_rows.chain(bounded).collect();
+    columns.retain(|&j| !std::mem::replace(&mut known[j], true));
+    let mut sub = p.part(&columns, &rows, &p.lower);
+    sub.cost.fill(0.0);
+    for (k, &j) in columns.iter().enumerate() {
+        if !set.contains(&Member::Lower(j)) {
+            sub.lower[k] = f64::NEG_INFINITY;
         }
-        number[j]
-    };
-    for &i in &rows {
-        let line: Vec<(usize, f64)> = p
-            .rows
-            .line(i)
-            .map(|(j, a)| (see(j, &mut columns), a))
-            .collect();
-        sub.rows.push(line);
-        sub.row_lower.push(p.row_lower[i]);
-        sub.row_upper.push(p.row_upper[i]);
-    }
-    for m in set {
-        if let Member::Lower(j) | Member::Upper(j) = *m {
-            see(j, &mut columns);
+        if !set.contains(&Member::Upper(j)) {
+            sub.upper[k] = f64::INFINITY;
         }
     }
-    for &j in &columns {
-        let bound = |m: Member, b: f64, none: f64| if set.contains(&m) { b } else { none };
-        sub.lower
-            .push(bound(Member::Lower(j), p.lower[j], f64::NEG_INFINITY));
-        sub.upper
-            .push(bound(Member::Upper(j), p.upper[j], f64::INFINITY));
-    }
-    sub.cost = vec![0.0; columns.len()];
-    sub.columns = sub.rows.transpose(columns.len());
     let mut simplex = Simplex::new(&sub);
     let most = 5000 + 50 * (sub.m() + sub.n()) as u64;
     let ended = simplex.solve(&mut watch(budget, most));
@@ -225,73 +206,5 @@ fn test(p: &Problem, set: &BTreeSet<Member>, budget: &Budget) -> Tested {
             )
         }
         _ => Tested::Unknown,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::model::instance::{Relation, Sense};
-    use crate::model::problem_type::ProblemType;
-    use crate::solve::answer::subproblem;
-    use crate::solve::backend::Task;
-    use crate::solve::conformance::{Quiet, linear};
-    use crate::solve::{Claim, Settings};
-
-    /// Whether the members alone can be satisfied, asked of the whole solver.
-    fn satisfiable(instance: &Instance, members: &[Member]) -> bool {
-        let mut i = instance.clone();
-        for j in 0..i.column_count() {
-            if !members.contains(&Member::Lower(j)) {
-                i.columns.lower[j] = f64::NEG_INFINITY;
-            }
-            if !members.contains(&Member::Upper(j)) {
-                i.columns.upper[j] = f64::INFINITY;
-            }
-        }
-        for r in 0..i.row_count() {
-            // The last row defines the objective and contradicts nothing.
-            if !members.contains(&Member::Row(r)) && r + 1 < i.row_count() {
-                i.rows.relation[r] = Relation::Free;
-            }
-        }
-        let mut quiet = Quiet::default();
-        let budget = Budget::unlimited(&mut quiet);
-        let a = subproblem(
-            &Task::new(ProblemType::Lp, &i),
-            &Settings::default(),
-            &budget,
-        );
-        a.expect("a linear instance").outcome.claim != Claim::Infeasible
-    }
-
-    #[test]
-    fn every_member_is_needed() {
-        let inf = f64::INFINITY;
-        let rows = [
-            (vec![1., 1., 0.], Relation::Less, 4.),
-            (vec![0., 1., 1.], Relation::Greater, 9.),
-            (vec![1., 0., -1.], Relation::Equal, 0.),
-            (vec![1., 1., 1.], Relation::Less, 100.),
-            (vec![1., 2., 3.], Relation::Greater, 1.),
-        ];
-        let bounds = [(0., 3.), (-5., 50.), (0., inf)];
-        let instance = linear(Sense::Minimize, &[1., 1., 1.], &bounds, &rows);
-        let found = irreducible(&instance, &[], &Budget::unlimited(&mut Quiet::default()));
-        let Some(Finding::Irreducible { members, shown, .. }) = found else {
-            panic!("it is infeasible: {found:?}");
-        };
-        assert!(shown);
-        let members: Vec<Member> = members.iter().map(|m| m.0).collect();
-        assert!(!satisfiable(&instance, &members));
-        for k in 0..members.len() {
-            let mut rest = members.clone();
-            rest.remove(k);
-            assert!(
-                satisfiable(&instance, &rest),
-                "{:?} is not needed",
-                members[k]
-            );
-        }
     }
 }

@@ -60,7 +60,7 @@ pub(super) fn findings(instance: &Instance, square: bool, x: &[f64]) -> Vec<Find
     for (k, &(_, j)) in open.iter().enumerate() {
         place[j] = k;
     }
-    let mut lines = Sparse::new();
+    let mut lines = Sparse::default();
     for &(i, _) in &open {
         let entries = (start[i]..start[i + 1]).map(|k| (place[column[k] as usize], values[k]));
         lines.push(entries.filter(|e| e.0 != usize::MAX && e.1 != 0.0));

@@ -15,7 +15,7 @@
 //! room in proportion to what they lack has often a thousand times as much there ([`room_for`]). It is sought first.
 
 use super::super::barrier::Goal;
-use super::super::form::{Problem, Sparse};
+use super::super::form::Problem;
 use super::super::{Ended, interior_only};
 use crate::solve::Budget;
 
@@ -86,10 +86,7 @@ enum Room<'a> {
 
 fn search(poly: &Problem, room: Room<'_>, limit: f64, budget: &Budget) -> Option<(Vec<f64>, f64)> {
     let n = poly.n();
-    let mut p = Problem {
-        rows: Sparse::new(),
-        ..Problem::default()
-    };
+    let mut p = Problem::default();
     p.cost = vec![0.0; n];
     for j in 0..n {
         let fixed = poly.lower[j] == poly.upper[j];

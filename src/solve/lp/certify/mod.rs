@@ -45,6 +45,17 @@ pub struct Unproved {
     pub column: Option<usize>,
 }
 
+impl Unproved {
+    /// Without a row or column to name.
+    pub(in crate::solve) fn new(why: &'static str) -> Self {
+        Self {
+            why,
+            row: None,
+            column: None,
+        }
+    }
+}
+
 /// What could be proved about the optimal value of an instance: it is not below `low` and not above
 /// `high`.
 #[derive(Clone, Debug, PartialEq)]
@@ -119,14 +130,10 @@ pub(super) fn certify_by(
     let form = Form::exact(instance)?;
     let scaling = Scaling::new(&form.problem);
     let p = scaling.apply(&form.problem);
-    let why = |why| Unproved {
-        why,
-        row: None,
-        column: None,
-    };
-    let (mut upper, mut lower) = (Err(why("")), Err(why("")));
+    let (mut upper, mut lower) = (Err(Unproved::new("")), Err(Unproved::new("")));
     if !scaling.is_exact(&form.problem, &p) {
-        let extreme = why("the coefficients are so extreme that they cannot be scaled exactly");
+        let extreme =
+            Unproved::new("the coefficients are so extreme that they cannot be scaled exactly");
         (upper, lower) = (Err(extreme.clone()), Err(extreme));
     } else {
         let small = p.m() + p.n() <= MAX_EXACT_SIZE;
@@ -431,32 +438,8 @@ mod tests {
     use crate::model::problem_type::ProblemType;
     use crate::solve::Settings;
     use crate::solve::backend::{Backend, Task};
-    use crate::solve::conformance;
+    use crate::solve::dense::linear;
     use crate::solve::lp::Clarabel;
-
-    fn proof(instance: &Instance) -> Proof {
-        let settings = Settings::default();
-        let (mut quiet, mut again) = (Quiet::default(), Quiet::default());
-        let task = Task::new(ProblemType::Lp, instance);
-        let reply = Clarabel.solve(&task, &settings, &Budget::unlimited(&mut quiet));
-        let outcome = reply.expect("a linear instance").outcome;
-        certify(instance, &outcome, &Budget::unlimited(&mut again)).expect("a linear instance")
-    }
-
-    const INF: f64 = f64::INFINITY;
-
-    #[test]
-    fn a_textbook_program_is_solved_exactly() {
-        for (sense, cost, value) in [
-            (Sense::Maximize, [3., 2.], 28.0),
-            (Sense::Minimize, [-3., -2.], -28.0),
-        ] {
-            let rows = [(vec![1., 1.], Relation::Less, 10.)];
-            let instance = conformance::linear(sense, &cost, &[(0., 8.), (0., INF)], &rows);
-            let p = proof(&instance);
-            assert_eq!((p.low, p.high), (value, value));
-        }
-    }
 
     #[test]
     fn intervals_hold_where_data_are_no_fractions_of_two() {
@@ -465,33 +448,12 @@ mod tests {
             (vec![0.3, 0.1], Relation::Less, 0.1),
             (vec![0.1, 0.3], Relation::Less, 0.1),
         ];
-        let bounds = [(0., INF), (0., INF)];
-        let instance = conformance::linear(Sense::Maximize, &[1., 1.], &bounds, &rows);
-        let p = proof(&instance);
+        let instance = linear(Sense::Maximize, &[1., 1.], &[(0., f64::INFINITY); 2], &rows);
+        let mut quiet = Quiet::default();
+        let budget = Budget::unlimited(&mut quiet);
+        let task = Task::new(ProblemType::Lp, &instance);
+        let reply = Clarabel.solve(&task, &Settings::default(), &budget);
+        let p = certify(&instance, &reply.expect("linear").outcome, &budget).expect("linear");
         assert!(p.low <= p.high && p.high - p.low < 1e-15 && (p.low - 0.5).abs() < 1e-15);
-    }
-
-    #[test]
-    fn without_a_solution_there_is_no_interval() {
-        let rows = [(vec![1., 1.], Relation::Greater, 30.)];
-        let bounds = [(0., 8.), (0., 8.)];
-        let p = proof(&conformance::linear(
-            Sense::Minimize,
-            &[1., 1.],
-            &bounds,
-            &rows,
-        ));
-        assert_eq!(p.high, INF);
-        assert!(p.no_high.is_some());
-        let rows = [(vec![1., -1.], Relation::Less, 3.)];
-        let bounds = [(0., INF), (0., INF)];
-        let p = proof(&conformance::linear(
-            Sense::Maximize,
-            &[1., 1.],
-            &bounds,
-            &rows,
-        ));
-        assert_eq!(p.high, INF);
-        assert!(p.no_high.is_some());
     }
 }

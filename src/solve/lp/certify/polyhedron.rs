@@ -6,7 +6,7 @@
 //! without a lower one, d_j = 0 without any. Its value, a lower bound of the minimum for *every*
 //! such y, is Σ_i inf y_i [L_i, U_i] + Σ_j inf d_j [l_j, u_j].
 
-use super::super::form::{Problem, Sparse};
+use super::super::form::Problem;
 use super::Enclosed;
 use crate::solve::interval::{Interval, WideSum};
 
@@ -18,10 +18,7 @@ pub(super) fn is_priced(p: &Problem, j: usize) -> bool {
 /// The feasible multipliers of a program; their cost is −b as far as that is linear, for choosing a point that costs little.
 pub(super) fn dual(p: &Problem) -> Problem {
     let side = |finite: bool, value: f64| if finite { 0.0 } else { value };
-    let mut d = Problem {
-        rows: Sparse::new(),
-        ..Problem::default()
-    };
+    let mut d = Problem::default();
     for i in 0..p.m() {
         let (l, u) = (p.row_lower[i].is_finite(), p.row_upper[i].is_finite());
         let (low, high) = (p.row_lower[i], p.row_upper[i]);

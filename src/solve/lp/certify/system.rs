@@ -64,13 +64,7 @@ impl System {
         let mut basis = choose(poly, &rows, moves, &entries);
         let mut factor = None;
         for _ in 0..20 {
-            let columns: Vec<Entries> = basis
-                .iter()
-                .map(|&j| match j {
-                    Choice::Column(j) => entries(j),
-                    Choice::Unit(p) => vec![(p, 1.0)],
-                })
-                .collect();
+            let columns: Vec<Entries> = basis.iter().map(|c| c.entries(&entries)).collect();
             match Factor::new(k, &columns) {
                 Ok(f) => {
                     factor = Some(f);
@@ -202,6 +196,15 @@ enum Choice {
     Unit(usize),
 }
 
+impl Choice {
+    fn entries(&self, of_column: &dyn Fn(usize) -> Entries) -> Entries {
+        match *self {
+            Self::Column(j) => of_column(j),
+            Self::Unit(p) => vec![(p, 1.0)],
+        }
+    }
+}
+
 /// A column of its own for each equation, the equations with the fewest candidates first.
 fn choose(
     poly: &Problem,
@@ -289,13 +292,7 @@ fn repair(
         inside[j] = true;
         basis[slot] = Choice::Column(j);
         if !factor.replace(slot, &entries(j)) || factor.is_worn() {
-            let columns: Vec<Entries> = basis
-                .iter()
-                .map(|&c| match c {
-                    Choice::Column(j) => entries(j),
-                    Choice::Unit(p) => vec![(p, 1.0)],
-                })
-                .collect();
+            let columns: Vec<Entries> = basis.iter().map(|c| c.entries(entries)).collect();
             *factor = Factor::new(basis.len(), &columns).map_err(|_| None)?;
         }
     }

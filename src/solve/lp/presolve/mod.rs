@@ -13,8 +13,6 @@
 mod columns;
 mod restore;
 mod rows;
-#[cfg(test)]
-mod tests;
 
 use super::form::{Activity, Problem, Sparse, term};
 use super::simplex::State;
@@ -350,7 +348,7 @@ impl Work {
         let pick = |values: &[f64], places: &[u32]| -> Vec<f64> {
             places.iter().map(|&k| values[k as usize]).collect()
         };
-        let mut lines = Sparse::new();
+        let mut lines = Sparse::default();
         for &i in &rows {
             lines.push(self.row_entries(i as usize).map(|(j, a)| (number[j], a)));
         }

@@ -284,7 +284,7 @@ fn is_marked(lu: &SparseLu, k: usize) -> bool {
 /// An order of the columns in which those go first, and last, that rows and columns of one entry give, taken away one after the other,
 /// short ones before long ones between them, and empty ones at the very end; and how many are between.
 fn triangular_order(m: usize, columns: &[Entries]) -> (Vec<usize>, usize) {
-    let mut lines = Sparse::new();
+    let mut lines = Sparse::default();
     for column in columns {
         lines.push(column.iter().copied());
     }

@@ -845,6 +845,3 @@ pub(super) fn jitter(j: usize) -> f64 {
     h ^= h >> 31;
     0.5 + (h >> 12) as f64 / (1u64 << 53) as f64
 }
-
-#[cfg(test)]
-mod tests;

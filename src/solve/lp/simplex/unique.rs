@@ -100,7 +100,7 @@ impl Simplex {
 mod tests {
     use super::super::Simplex;
     use crate::model::instance::{Relation, Sense};
-    use crate::solve::conformance;
+    use crate::solve::dense;
     use crate::solve::lp::Ended;
     use crate::solve::lp::form::Form;
 
@@ -108,8 +108,8 @@ mod tests {
     fn says_what_is_not_unique() {
         let inf = f64::INFINITY;
         let bounds = [(0., inf), (0., inf)];
-        let others = |cost: &[f64], rows: &[conformance::Row]| {
-            let instance = conformance::linear(Sense::Maximize, cost, &bounds, rows);
+        let others = |cost: &[f64], rows: &[dense::Row]| {
+            let instance = dense::linear(Sense::Maximize, cost, &bounds, rows);
             let form = Form::new(&instance).expect("valid");
             let mut s = Simplex::new(&form.problem);
             assert_eq!(s.solve(&mut |_| None), Ended::Solved);

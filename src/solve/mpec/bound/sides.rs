@@ -13,7 +13,7 @@ use std::collections::{BTreeMap, HashMap};
 use super::super::pairs::Program;
 use super::super::split::sides;
 use crate::model::instance::{INFINITE, Relation};
-use crate::solve::lp::form::{Problem, Sparse};
+use crate::solve::lp::form::Problem;
 
 /// Σ terms + constant, over the columns of one side.
 #[derive(Clone, Debug, Default)]
@@ -238,7 +238,6 @@ impl Sides {
             cost: vec![0.0; a.count],
             lower: vec![f64::NEG_INFINITY; a.count],
             upper: vec![f64::INFINITY; a.count],
-            rows: Sparse::new(),
             ..Problem::default()
         };
         p.cost[self.target] = self.sign;

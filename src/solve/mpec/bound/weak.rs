@@ -66,7 +66,6 @@ pub(crate) fn elastic(p: &Problem) -> Problem {
         cost: vec![0.0; n],
         lower: p.lower.clone(),
         upper: p.upper.clone(),
-        rows: Sparse::new(),
         ..Problem::default()
     };
     q.cost.push(1.0);
@@ -104,7 +103,7 @@ pub(crate) fn derive(
     known: &[f64],
     stop: &mut dyn FnMut(u64) -> Option<Ended>,
 ) -> u64 {
-    let mut rows = Sparse::new();
+    let mut rows = Sparse::default();
     (0..p.m()).for_each(|i| rows.push(p.rows.line(i).collect::<Vec<_>>()));
     let costs = p.cost.iter().copied().enumerate();
     rows.push(costs.filter(|c| c.1 != 0.0));

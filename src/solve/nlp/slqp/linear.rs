@@ -8,7 +8,7 @@ use super::equality::Working;
 use super::point::{Frame, Point};
 use crate::solve::Budget;
 use crate::solve::lp::Ended;
-use crate::solve::lp::form::{self, Problem, Sparse};
+use crate::solve::lp::form::{self, Problem};
 use crate::solve::lp::scale::Scaling;
 use crate::solve::lp::simplex::{Basis, Simplex, State};
 use crate::solve::lp::simplex_work;
@@ -229,7 +229,6 @@ impl Program {
         let n = frame.n;
         let mut problem = Problem {
             cost: at.gradient.iter().map(|g| aim.weight * g).collect(),
-            rows: Sparse::new(),
             ..Problem::default()
         };
         for j in 0..n {
