@@ -592,6 +592,7 @@ impl Method<'_, '_> {
         }
         if gain < TAKEN
             && self.refusals >= REFUSALS
+            && linear.short == 0.0
             && let Some(v) = &there
         {
             let phi = phi(v, weight, &self.frame);
