@@ -401,10 +401,13 @@ fn convex_search(
             .collect(),
         forms,
         numbers: &form.columns,
-        lost: false,
     };
-    let Some(root) = tangents.best(&instance.columns.level, control) else {
-        return Ok(None);
+    let level = &instance.columns.level;
+    let (root, begun) = match tangents.best(level, control) {
+        Some(Some(root)) => (root, true),
+        Some(None) => return Ok(None),
+        // tangents where the nonlinear solver began
+        None => (tangents.with_values(level.clone()), false),
     };
     let mut mip = Mip::new(form.problem.clone(), linear, &form.columns, aim.priorities);
     tangents.tighten(&mut mip, &root);
@@ -418,7 +421,7 @@ fn convex_search(
     let given_up = match found.end {
         End::Complete | End::Gap => found.incomplete || !found.exact,
         End::Stopped(Ended::Failed) => true,
-        _ => false,
+        _ => !begun && found.x.is_none(),
     };
     if given_up {
         return Ok(None);

@@ -66,8 +66,6 @@ pub(super) struct Convex<'s> {
     pub forms: &'s mut [Form],
     /// Columns of the linear instance, of those of the linear program.
     pub numbers: &'s [u32],
-    /// The nonlinear solver has left a program without an answer.
-    pub lost: bool,
 }
 
 impl<'s> Convex<'s> {
@@ -86,21 +84,24 @@ impl<'s> Convex<'s> {
         }
     }
 
-    /// The best point of the program for the present bounds, with the values of the forms.
-    pub(super) fn best(&mut self, level: &[f64], control: &mut Control) -> Option<Vec<f64>> {
+    /// The best point of the program for the present bounds, with the values of the forms; Some(None): there is none, None:
+    /// the nonlinear solver has no answer, as at kinks.
+    pub(super) fn best(
+        &mut self,
+        level: &[f64],
+        control: &mut Control,
+    ) -> Option<Option<Vec<f64>>> {
         use ModelStatus as S;
         let answer = self.nonlinear.answer(level, u64::MAX, control)?;
         match answer.status {
-            S::Optimal | S::LocallyOptimal => Some(self.with_values(answer.outcome.level)),
-            S::Infeasible | S::LocallyInfeasible => None,
-            _ => {
-                self.lost = true;
-                None
-            }
+            S::Optimal | S::LocallyOptimal => Some(Some(self.with_values(answer.outcome.level))),
+            S::Infeasible | S::LocallyInfeasible => Some(None),
+            _ => None,
         }
     }
 
-    fn with_values(&self, mut level: Vec<f64>) -> Vec<f64> {
+    /// A point of the program with the values of the forms.
+    pub(super) fn with_values(&self, mut level: Vec<f64>) -> Vec<f64> {
         level.resize(self.discrete.len() + self.forms.len(), 0.0);
         for f in self.forms.iter() {
             // of a point that satisfies the program it has a value
@@ -217,8 +218,8 @@ impl<'s> Outer<'s> {
         cuts
     }
 
-    /// The best point whose discrete columns are as in this one, of the program.
-    fn decided(&mut self, x: &[f64], control: &mut Control) -> Option<Vec<f64>> {
+    /// The best point whose discrete columns are as in this one, of the program; Some(None) and None as for [`Convex::best`].
+    fn decided(&mut self, x: &[f64], control: &mut Control) -> Option<Option<Vec<f64>>> {
         let mip = self.mip;
         let mut key = x.to_vec();
         for (j, v) in key.iter_mut().enumerate() {
@@ -231,7 +232,7 @@ impl<'s> Outer<'s> {
             && mip.has_integers_only()
             && *known == key
         {
-            return point.clone();
+            return Some(point.clone());
         }
         for j in (0..key.len()).filter(|&j| mip.integer[j]) {
             self.bound(j, [key[j]; 2]);
@@ -241,7 +242,7 @@ impl<'s> Outer<'s> {
         for j in (0..key.len()).filter(|&j| mip.integer[j]) {
             self.bound(j, self.bounds[j]);
         }
-        self.decided = Some((key, point.clone()));
+        self.decided = point.clone().map(|point| (key, point));
         point
     }
 
@@ -299,7 +300,7 @@ impl Relaxation for Outer<'_> {
             let mut cuts = self.violated(&x, &x, tolerance);
             if !cuts.is_empty() && whole && rounds >= OWN_ROUNDS {
                 let point = self.point.clone();
-                if let Some(best) = self.decided(&point, control) {
+                if let Some(Some(best)) = self.decided(&point, control) {
                     let reached = self.mip.value(&self.way.forth(&best));
                     if value >= reached - SAME * reached.abs().max(0.1) {
                         break;
@@ -322,11 +323,15 @@ impl Relaxation for Outer<'_> {
 
     fn solve_decided(&mut self, x: &[f64], control: &mut Control) -> Solved {
         match self.decided(x, control) {
-            Some(level) => {
+            Some(Some(level)) => {
                 self.point = self.way.forth(&level);
                 Solved::Value(self.mip.value(&self.point))
             }
-            None => Solved::Infeasible,
+            Some(None) => Solved::Infeasible,
+            None => {
+                self.exact = false;
+                Solved::Failed
+            }
         }
     }
 
@@ -358,6 +363,6 @@ impl Relaxation for Outer<'_> {
     }
 
     fn is_exact(&self) -> bool {
-        self.exact && !self.convex.lost
+        self.exact
     }
 }
