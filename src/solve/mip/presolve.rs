@@ -6,7 +6,7 @@
 use super::model::{Change, FEASIBLE, Mip};
 use super::propagate::Propagator;
 use crate::model::instance::OrderedSet;
-use crate::solve::lp::form::{Problem, Sparse};
+use crate::solve::lp::form::Problem;
 use std::collections::HashMap;
 
 /// The way back from a presolved program.
@@ -399,7 +399,7 @@ fn put_in(mip: &mut Mip, given: &[Given]) {
         p.cost[g.column] = 0.0;
         (p.lower[g.column], p.upper[g.column]) = (0.0, 0.0);
     }
-    let old = std::mem::replace(&mut p.rows, Sparse::default());
+    let old = std::mem::take(&mut p.rows);
     for i in 0..old.lines() {
         let mut entries: Vec<(usize, f64)> = Vec::new();
         for (j, a) in old.line(i) {

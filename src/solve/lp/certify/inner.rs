@@ -86,8 +86,10 @@ enum Room<'a> {
 
 fn search(poly: &Problem, room: Room<'_>, limit: f64, budget: &Budget) -> Option<(Vec<f64>, f64)> {
     let n = poly.n();
-    let mut p = Problem::default();
-    p.cost = vec![0.0; n];
+    let mut p = Problem {
+        cost: vec![0.0; n],
+        ..Problem::default()
+    };
     for j in 0..n {
         let fixed = poly.lower[j] == poly.upper[j];
         let side = |b: f64, other: f64| if fixed { b } else { other };
