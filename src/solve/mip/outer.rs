@@ -329,6 +329,11 @@ impl Relaxation for Outer<'_> {
             }
             Some(None) => Solved::Infeasible,
             None => {
+                let at = self.way.back(x);
+                if self.mip.is_feasible(x) && self.violated(&at, &at, EXACT).is_empty() {
+                    self.point = x.to_vec();
+                    return Solved::Value(self.mip.value(x));
+                }
                 self.exact = false;
                 Solved::Failed
             }

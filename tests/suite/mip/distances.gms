@@ -23,7 +23,7 @@ dist(c,w)..  d(c,w) =g= sqrt(sum(k, sqr(s(w,k) - p(c,k)))) - big*(1 - y(c,w));
 one(c)..     sum(w, y(c,w)) =e= 1;
 room(w)..    sum(c, y(c,w)) =l= 6;
 model m / all /;
-option optCR = 0, resLim = 20;
+option optCR = 0, resLim = 300;
 solve m using minlp minimizing z;
 scalar status, least;
 status = m.modelStat;  least = round(z.l, 5);

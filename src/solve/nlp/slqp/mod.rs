@@ -620,7 +620,7 @@ impl Method<'_, '_> {
         }
         let lambda = match (&quadratic, full) {
             (Some(q), true) if !q.yields => q.lambda.clone(),
-            _ => linear.lambda,
+            _ => linear.lambda.clone(),
         };
         let point = there.and_then(|v| Point::new(self.nlp, &self.frame, next, v));
         let Some(point) = point else {
@@ -641,7 +641,7 @@ impl Method<'_, '_> {
             let (frame, memory) = (&self.frame, &mut self.memory);
             let again = Equality::new(frame, &self.at, &hessian, &working, ANY, memory);
             let last = [again, quadratic].into_iter().flatten().map(|q| q.lambda);
-            self.choose(last.chain([lambda]));
+            self.choose(last.chain([lambda, linear.lambda]));
             return Err(End::Solved);
         }
         if self.recent.len() >= EARLIER {
