@@ -562,6 +562,11 @@ impl Method<'_, '_> {
         } = model.course(&cauchy, quadratic, linear.working.clone(), self.radius);
         let promised = -model.change(&d);
         let small = promised <= ROUNDING * now.abs().max(1.0);
+        if small && self.at.residual(&self.frame, &linear.lambda) <= SOLVED {
+            // other vertices are as good: the point stays
+            self.lambda = linear.lambda;
+            return Err(End::Solved);
+        }
         let mut next = sum(&self.at.x, 1.0, &d);
         self.frame.clip(&mut next);
         let mut there = Values::at(self.nlp, &self.frame, &next);
