@@ -19,10 +19,11 @@ mod point;
 
 use super::problem::{Entry, Problem};
 use crate::solve::strategy::{Strategies, Strategy};
+use crate::solve::vector::sum;
 use crate::solve::{Budget, Progress};
 use equality::{ANY, Equality, Memory, Working};
 use linear::{Aim, Linear, Step};
-use model::{Course, Model, sum};
+use model::{Course, Model};
 use point::{Frame, Point, Values};
 
 /// What may be spent on it.

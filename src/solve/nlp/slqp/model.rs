@@ -3,6 +3,7 @@
 use super::equality::{Equality, Met, Working};
 use super::point::{Frame, Point};
 use crate::solve::nlp::problem::Entry;
+use crate::solve::vector::sum;
 
 /// The quadratic model of φ.
 #[derive(Clone, Copy)]
@@ -196,9 +197,4 @@ impl Model<'_> {
         }
         (part, met)
     }
-}
-
-/// a + t b
-pub(super) fn sum(a: &[f64], t: f64, b: &[f64]) -> Vec<f64> {
-    a.iter().zip(b).map(|(a, b)| a + t * b).collect()
 }
