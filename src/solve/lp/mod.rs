@@ -706,6 +706,16 @@ fn finished_from(
     (done, true)
 }
 
+/// How an interior point and a crossover from it ended, and the simplex method at their vertex if they led to one.
+pub(in crate::solve) fn crossed_over(
+    p: &Problem,
+    strategies: Strategies,
+    budget: &Budget,
+) -> (Ended, Option<Simplex>) {
+    let gave = finished(p, None, Accuracy::Fast(1e-9), strategies, budget);
+    (gave.ended, gave.engine)
+}
+
 /// Whether a program has no free column, or no constraint: the simplex method ends at once, and Clarabel does not take it.
 fn is_trivial(p: &Problem) -> bool {
     let all_fixed = (0..p.n()).all(|j| p.lower[j] == p.upper[j]);

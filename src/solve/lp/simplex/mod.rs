@@ -142,6 +142,8 @@ pub struct Simplex {
     pub most_work: f64,
     /// Asked once, when that is reached: what the most is.
     pub appeal: Option<Rc<Appeal>>,
+    /// The basis is near an optimal one, as a rule: only work that was done counts.
+    pub warm: bool,
     /// Numbers that the pivots have touched, about.
     work: f64,
     /// The part of the sum of violations that is left of the largest in the dual method.
@@ -777,7 +779,10 @@ impl Simplex {
     /// Whether this is as far as it may go.
     fn is_spent(&mut self) -> bool {
         let pivots = self.iterations.max(TELLING) as f64;
-        let ahead = (AHEAD * self.m as f64 / pivots - 1.0).max(0.0);
+        let ahead = match self.warm {
+            true => 0.0,
+            false => (AHEAD * self.m as f64 / pivots - 1.0).max(0.0),
+        };
         let work = self.work * (1.0 + ahead * self.left);
         if work > self.most_work
             && let Some(appeal) = self.appeal.take()

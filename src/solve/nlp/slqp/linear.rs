@@ -11,11 +11,11 @@ use crate::solve::lp::Ended;
 use crate::solve::lp::form::{self, Problem};
 use crate::solve::lp::scale::Scaling;
 use crate::solve::lp::simplex::{Basis, Simplex, State};
-use crate::solve::lp::simplex_work;
+use crate::solve::lp::{crossed_over, simplex_work};
+use crate::solve::strategy::Strategies;
 
-/// Where a program takes so many times as much as its solution by an interior point would, one goes for the whole. (At twice as much the
-/// relaxations of models/walls/loop.blk end at points that are only feasible.)
-const MOST_WORK: f64 = 20.0;
+/// A program that takes so many times as much from the last basis as an interior point would is left to one, and to a crossover.
+const MOST_WORK: f64 = 2.0;
 
 /// Of the program, in its units; and where that is not to be had, of derivatives that differ by many orders of magnitude. What is left of the
 /// rows is left to later steps.
@@ -33,6 +33,7 @@ pub(super) struct Linear {
     pub(super) pivots: u64,
     /// Linear variables have a trust region too.
     pub(super) confined: bool,
+    strategies: Strategies,
 }
 
 /// What a program is made of.
@@ -62,7 +63,7 @@ pub(super) struct Step {
 
 impl Linear {
     /// What lies between its bounds is basic: at a vertex, and near one, that is the basis of the first program.
-    pub(super) fn new(frame: &Frame, at: &Point, pivots: u64) -> Self {
+    pub(super) fn new(frame: &Frame, at: &Point, pivots: u64, strategies: Strategies) -> Self {
         let state = |v: f64, l: f64, u: f64| {
             let near = 1e-9 * v.abs().max(1.0);
             match (v - l > near, u - v > near) {
@@ -79,6 +80,7 @@ impl Linear {
             rows: (0..frame.m).map(row).collect(),
             pivots,
             confined: false,
+            strategies,
         }
     }
 
@@ -139,7 +141,7 @@ impl Linear {
             .collect();
         let mut simplex = Simplex::new(&scaled);
         simplex.limit = self.pivots;
-        simplex.most_work = MOST_WORK * simplex_work(&scaled);
+        (simplex.most_work, simplex.warm) = (MOST_WORK * simplex_work(&scaled), true);
         simplex.set_basis(&from);
         let mut last = Ended::Failed;
         for tolerance in TOLERANCES {
@@ -149,7 +151,11 @@ impl Linear {
                 break;
             }
         }
+        let given_up = last == Ended::Iterations && simplex.iterations < self.pivots;
         self.pivots = self.pivots.saturating_sub(simplex.iterations);
+        if given_up && let (ended, Some(engine)) = crossed_over(&scaled, self.strategies, budget) {
+            (last, simplex) = (ended, engine);
+        }
         match last {
             Ended::Solved => Ok(match simplex.point() {
                 Some(point) => Ok((p.scaling.restore(point), simplex.basis())),

@@ -155,7 +155,8 @@ fn solve_from(
     frame.widen(request.width);
     let values = Values::at(nlp, &frame, &start)?;
     let at = Point::new(nlp, &frame, start, values)?;
-    let linear = Linear::new(&frame, &at, request.effort.pivots * (n + m) as u64);
+    let pivots = request.effort.pivots * (n + m) as u64;
+    let linear = Linear::new(&frame, &at, pivots, request.strategies);
     let lambda = request.multipliers.map(|l| frame.in_units(l));
     let mut method = Method {
         nlp,
