@@ -11,7 +11,7 @@ use super::host::{Output, SystemHost, watch_ctrl_c, write_whole};
 use super::watchdog::{Watch, Watchdog};
 use crate::formulation::derived::Kind;
 use crate::report::diagnostic::{Diagnostic, json_lines};
-use crate::report::diagnostics::{self, Look};
+use crate::report::diagnostics::{self, Look, columns};
 use crate::report::json::{Report, RunStatus};
 use crate::run::{ListOptions, Machine, Options};
 use crate::session::{self, Finished};
@@ -240,6 +240,7 @@ fn run(a: &RunArgs) -> Status {
         quiet: a.quiet,
         all: a.all,
         color: Look::stream(is_terminal).color,
+        line: columns(is_terminal).map(|c| c.max(40)),
         ..options(&a.solve)?
     };
     let file = name(&a.model);

@@ -44,6 +44,8 @@ pub struct Options {
     pub all: bool,
     /// Summaries in colour.
     pub color: bool,
+    /// Characters on a line of a display, where it is read on a screen.
+    pub line: Option<usize>,
     /// `bmod list`: generate, print rows and columns, do not solve: how many per block.
     pub list: Option<ListOptions>,
     /// Keep a solve, to be looked at when the run is over.

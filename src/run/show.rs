@@ -166,7 +166,7 @@ impl Machine<'_> {
                 cells,
                 numbers,
                 layout,
-                page: display::PAGE,
+                page: self.options.line.unwrap_or(display::PAGE),
             };
             sheet.write(&mut page.text);
         }
