@@ -62,15 +62,25 @@ pub type ReadData<'a> = &'a mut dyn FnMut(&str, Span) -> Outcome<Vec<u8>>;
 /// What a directive may ask about the symbols known so far.
 pub trait Known {
     /// The kind of a declared symbol.
-    fn kind(&self, name: &str) -> Option<SymbolKindName>;
+    fn kind(&self, _name: &str) -> Option<SymbolKindName> {
+        None
+    }
     /// Whether it has data.
-    fn is_defined(&self, name: &str) -> bool;
+    fn is_defined(&self, _name: &str) -> bool {
+        false
+    }
     /// Its number of indices.
-    fn dimension(&self, name: &str) -> Option<usize>;
+    fn dimension(&self, _name: &str) -> Option<usize> {
+        None
+    }
     /// Number of elements of a set or of records of a parameter.
-    fn card(&self, name: &str) -> Option<usize>;
+    fn card(&self, _name: &str) -> Option<usize> {
+        None
+    }
     /// Value of a scalar.
-    fn scalar_value(&self, name: &str) -> Option<f64>;
+    fn scalar_value(&self, _name: &str) -> Option<f64> {
+        None
+    }
     /// Whether the language has a function of this name.
     fn is_function(&self, _name: &str) -> bool {
         false
@@ -87,8 +97,8 @@ pub trait Known {
     fn put_open(&self) -> bool {
         false
     }
-    /// A day number, or a part of one: `jdate(2012,3,1)`, `gdow(d)`.
-    fn date(&self, _function: &str, _arguments: &[f64]) -> Option<f64> {
+    /// Value of a function (its name in small letters); `undf` where it has none.
+    fn function_value(&self, _function: &str, _arguments: &[f64]) -> Option<f64> {
         None
     }
     /// Errors reported so far, cleared or not.
@@ -113,23 +123,7 @@ pub trait Known {
 /// For texts that stand alone: no symbol is known.
 pub struct NothingKnown;
 
-impl Known for NothingKnown {
-    fn kind(&self, _: &str) -> Option<SymbolKindName> {
-        None
-    }
-    fn is_defined(&self, _: &str) -> bool {
-        false
-    }
-    fn dimension(&self, _: &str) -> Option<usize> {
-        None
-    }
-    fn card(&self, _: &str) -> Option<usize> {
-        None
-    }
-    fn scalar_value(&self, _: &str) -> Option<f64> {
-        None
-    }
-}
+impl Known for NothingKnown {}
 
 /// How the text ended.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
