@@ -480,38 +480,9 @@ impl Table {
             return;
         }
         self.tidy();
-        let (old_keys, old_values) = (
-            std::mem::take(&mut self.keys),
-            std::mem::take(&mut self.values),
-        );
-        let mut t = Self::new(d, self.default);
-        t.keys.reserve(old_keys.len() + keys.len());
-        t.values.reserve(old_values.len() + values.len());
-        let mut old = 0;
-        let default = self.default;
-        let mut put = |k: &[Label], v: f64| {
-            if v != default {
-                t.keys.extend_from_slice(k);
-                t.values.push(v);
-            }
-        };
-        for (k, &v) in keys.chunks_exact(d).zip(values) {
-            while old < old_values.len() && old_keys[old * d..(old + 1) * d] < *k {
-                put(&old_keys[old * d..(old + 1) * d], old_values[old]);
-                old += 1;
-            }
-            if old < old_values.len() && old_keys[old * d..(old + 1) * d] == *k {
-                old += 1;
-            }
-            put(k, v);
-        }
-        while old < old_values.len() {
-            put(&old_keys[old * d..(old + 1) * d], old_values[old]);
-            old += 1;
-        }
-        t.sorted = t.values.len();
-        t.special = Special::among(&t.values);
-        *self = t;
+        self.keys.extend_from_slice(keys);
+        self.values.extend_from_slice(values);
+        self.tidy();
     }
 
     /// Number of different labels at each position (tidy tables).
