@@ -34,11 +34,9 @@ fn all(bytes: &[u8]) -> Result<Contents<'_>> {
 fn what_is_written_is_read() {
     for bytes in [PLAIN, RELAXED] {
         let contents = all(bytes).expect("read");
-        for packed in [false, true] {
-            let again = write(&contents, packed).expect("written");
-            let read = all(&again).expect("read again");
-            assert_eq!(format!("{read:?}"), format!("{contents:?}"));
-        }
+        let again = write(&contents).expect("written");
+        let read = all(&again).expect("read again");
+        assert_eq!(format!("{read:?}"), format!("{contents:?}"));
     }
 }
 
@@ -76,17 +74,15 @@ fn large_steps_and_blocks() {
         values: (0..len).map(value).collect(),
         texts: Vec::new(),
     };
-    for packed in [false, true] {
-        let contents = Contents {
-            labels: labels.clone(),
-            texts: vec![""],
-            acronyms: Vec::new(),
-            symbols: vec![(symbol.clone(), records.clone())],
-        };
-        let bytes = write(&contents, packed).expect("written");
-        let file = File::open(&bytes).expect("read");
-        assert_eq!(file.records(0).expect("read"), records);
-    }
+    let contents = Contents {
+        labels,
+        texts: vec![""],
+        acronyms: Vec::new(),
+        symbols: vec![(symbol, records.clone())],
+    };
+    let bytes = write(&contents).expect("written");
+    let file = File::open(&bytes).expect("read");
+    assert_eq!(file.records(0).expect("read"), records);
 }
 
 #[test]
@@ -129,7 +125,7 @@ fn what_a_file_cannot_hold_is_refused() {
             acronyms: Vec::new(),
             symbols: vec![(symbol, records)],
         };
-        write(&contents, false)
+        write(&contents)
     };
     assert!(value(vec![&long], 1.0).is_err());
     assert!(value(vec!["a"], 1e300).is_err());

@@ -484,7 +484,7 @@ pub(super) fn write(
         }
         contents.symbols.push((head, records));
     }
-    gdx::write(&contents, false)
+    gdx::write(&contents)
 }
 
 fn value(v: f64) -> Value {
