@@ -244,7 +244,7 @@ impl<'a> Loading<'a> {
                 t.set(&[], values.first().copied().unwrap_or(default));
                 t
             } else {
-                Table::from_sorted(dim, default, keys.clone(), values)
+                Table::from_records(dim, default, keys.clone(), values)
             };
             if is_set && dim == 1 {
                 self.members
