@@ -23,7 +23,7 @@ pub(crate) mod figure;
 mod follow;
 mod index;
 mod input;
-mod model;
+pub mod model;
 pub(crate) mod option;
 pub(crate) mod output;
 mod statement;
