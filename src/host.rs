@@ -82,3 +82,20 @@ pub trait Host {
 pub fn day_number(seconds: f64) -> f64 {
     25568.0 + seconds / 86400.0
 }
+
+/// The text of a file: without a byte order mark. Old GAMS files are often Latin-1 in their comments; a `.blk` is UTF-8.
+pub(crate) fn text_of(path: &Path, bytes: Vec<u8>) -> Result<String, HostError> {
+    if bytes.starts_with(b"*GAMS*") {
+        return Err(HostError::Compressed);
+    }
+    let ending = path.extension();
+    let is_gams = ending.is_some_and(|e| ["gms", "inc"].iter().any(|g| e.eq_ignore_ascii_case(g)));
+    match String::from_utf8(bytes) {
+        Ok(text) => Ok(match text.strip_prefix('\u{feff}') {
+            Some(rest) => rest.to_string(),
+            None => text,
+        }),
+        Err(e) if is_gams => Ok(e.into_bytes().into_iter().map(char::from).collect()),
+        Err(e) => Err(HostError::NotUtf8(e.utf8_error().valid_up_to())),
+    }
+}

@@ -6,7 +6,7 @@
 use std::path::{Component, Path, PathBuf};
 use std::time::SystemTime;
 
-use crate::host::{Found, HostError};
+use crate::host::{Found, HostError, text_of};
 
 /// Which files a model may read, and where they are looked for.
 #[derive(Clone, Debug)]
@@ -103,24 +103,8 @@ impl Files {
     /// Reads a text, as [`crate::host::Host::read`] does.
     pub(crate) fn read(&self, path: &str, from: Option<&Path>) -> Found<String> {
         let (known, bytes) = self.read_bytes(path, from)?;
-        if bytes.starts_with(b"*GAMS*") {
-            return Err(HostError::Compressed);
-        }
-        match String::from_utf8(bytes) {
-            Ok(text) => {
-                // A byte order mark is no part of the text.
-                let text = match text.strip_prefix('\u{feff}') {
-                    Some(rest) => rest.to_string(),
-                    None => text,
-                };
-                Ok((known, text))
-            }
-            // Old GAMS files are often Latin-1 in their comments; a .blk is UTF-8.
-            Err(e) if is_gams(&known) => {
-                Ok((known, e.into_bytes().into_iter().map(char::from).collect()))
-            }
-            Err(e) => Err(HostError::NotUtf8(e.utf8_error().valid_up_to())),
-        }
+        let text = text_of(&known, bytes)?;
+        Ok((known, text))
     }
 
     /// Reads a file, as [`crate::host::Host::read_bytes`] does.
@@ -166,12 +150,6 @@ pub(crate) fn other(e: std::io::Error) -> HostError {
         }
         _ => HostError::Other(e.to_string()),
     }
-}
-
-/// Whether a file is GAMS's rather than bmod's, by its extension.
-fn is_gams(path: &Path) -> bool {
-    path.extension()
-        .is_some_and(|e| ["gms", "inc"].iter().any(|g| e.eq_ignore_ascii_case(g)))
 }
 
 /// Seconds since 1970-01-01 UTC.

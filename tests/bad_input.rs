@@ -171,3 +171,28 @@ fn what_no_model_lists_costs_nothing() {
     let unused = unused.replace("sum(a1(a), 1) + 1", "1");
     assert_eq!(counts(core), counts(&format!("{unused}{core}")));
 }
+
+/// A damaged GDX file ends in an error or gives other data; no panic, and no memory beyond the file's.
+#[test]
+fn damaged_gdx_files() {
+    let all = |bytes: &[u8]| {
+        let file = bmod::gdx::File::open(bytes)?;
+        (0..file.symbols.len()).try_for_each(|n| file.records(n).map(drop))
+    };
+    for name in ["gams", "gams_packed", "gams_relaxed"] {
+        let path = format!("tests/suite/exchange/{name}.gdx");
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(path);
+        let mut bytes = std::fs::read(path).expect("the file");
+        assert!(all(&bytes).is_ok());
+        for n in 0..bytes.len() {
+            assert!(all(&bytes[..n]).is_err(), "{n} bytes are enough");
+        }
+        for n in 0..bytes.len() {
+            for flip in [0x01, 0x80, 0xff] {
+                bytes[n] ^= flip;
+                let _ = all(&bytes);
+                bytes[n] ^= flip;
+            }
+        }
+    }
+}

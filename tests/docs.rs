@@ -15,6 +15,7 @@ fn pages() -> Vec<PathBuf> {
         .map(|e| e.expect("an entry").path())
         .filter(|p| p.extension().is_some_and(|e| e == "md"))
         .collect();
+    pages.push(root.join("tests/commands.md"));
     pages.sort();
     pages
 }

@@ -193,9 +193,9 @@ pub struct Ranges {
     pub sheet: Sheet,
 }
 
-/// What is asked of a solve that has run.
+/// What is asked of a solve that has run: what it answers, or why it cannot.
 type Question<'a, T> =
-    &'a mut dyn FnMut(&Machine, &Primal, &Studied) -> Result<T, Box<diag::Diagnostic>>;
+    &'a (dyn Fn(&Machine, &Primal, &Studied) -> Result<T, Box<diag::Diagnostic>> + Sync);
 
 impl Model {
     /// A model as formulas. Nothing is run, unless [`Choice::numbers`] asks for it.
@@ -203,19 +203,14 @@ impl Model {
     /// # Errors
     /// [`Error::Model`] if the text does not compile or has no such model.
     pub fn show(&self, choice: &Choice) -> Result<Formulas, Error> {
-        let shown = on_large_stack(|| match choice.numbers {
-            false => self.show_here(choice),
-            true => self.study(choice, &Options::default(), &mut |m, primal, studied| {
-                let (page, f) = show::page(
-                    m,
-                    &m.code,
-                    &show::Chosen::of(studied),
-                    Some(&primal.generated),
-                );
-                Ok(Formulas::shown(m, page, &f))
-            }),
-        });
-        shown.unwrap_or_else(broken)
+        if !choice.numbers {
+            return on_large_stack(|| self.show_here(choice)).unwrap_or_else(broken);
+        }
+        self.study(choice, &Options::default(), &|m, primal, studied| {
+            let chosen = show::Chosen::of(studied);
+            let (page, f) = show::page(m, &m.code, &chosen, Some(&primal.generated));
+            Ok(Formulas::shown(m, page, &f))
+        })
     }
 
     /// The dual of a linear model, with its indices; the levels are the marginals of the model. The model is run: data and
@@ -237,19 +232,16 @@ impl Model {
     }
 
     fn derive(&self, kind: Kind, choice: &Choice, options: &Options) -> Result<Formulas, Error> {
-        let derived = on_large_stack(|| {
-            self.study(choice, options, &mut |m, primal, studied| {
-                let d = kind.derive(m, primal, studied, choice.check, true)?;
-                Ok(Formulas {
-                    model: d.model(m, primal, &self.name, None),
-                    remarks: d.remarks(),
-                    check: d.check,
-                    title: d.title,
-                    ..Formulas::shown(m, d.page, &d.formulation)
-                })
+        self.study(choice, options, &|m, primal, studied| {
+            let d = kind.derive(m, primal, studied, choice.check, true)?;
+            Ok(Formulas {
+                model: d.model(m, primal, &self.name, None),
+                remarks: d.remarks(),
+                check: d.check,
+                title: d.title,
+                ..Formulas::shown(m, d.page, &d.formulation)
             })
-        });
-        derived.unwrap_or_else(broken)
+        })
     }
 
     fn show_here(&self, choice: &Choice) -> Result<Formulas, Error> {
@@ -286,24 +278,21 @@ impl Model {
     /// # Errors
     /// [`Error::Model`] if the run fails, if there is no such solve, if it is not linear or has no optimal answer.
     pub fn ranges(&self, choice: &Choice, options: &Options) -> Result<Ranges, Error> {
-        let ranges = on_large_stack(|| {
-            self.study(choice, options, &mut |m, primal, studied| {
-                let found = range::of(m, primal, studied, &[])?;
-                let o = &primal.generated.origin;
-                let sheet = Sheet(range::page(m, primal, &found));
-                let rows = found.rows.into_iter();
-                let columns = found.costs.into_iter();
-                Ok(Ranges {
-                    rows: rows.map(|r| (range::named(m, &o.rows, r.row), r)).collect(),
-                    columns: columns
-                        .map(|c| (range::named(m, &o.columns, c.column), c))
-                        .collect(),
-                    unfinished: found.unfinished,
-                    sheet,
-                })
+        self.study(choice, options, &|m, primal, studied| {
+            let found = range::of(m, primal, studied, &[])?;
+            let o = &primal.generated.origin;
+            let sheet = Sheet(range::page(m, primal, &found));
+            let rows = found.rows.into_iter();
+            let columns = found.costs.into_iter();
+            Ok(Ranges {
+                rows: rows.map(|r| (range::named(m, &o.rows, r.row), r)).collect(),
+                columns: columns
+                    .map(|c| (range::named(m, &o.columns, c.column), c))
+                    .collect(),
+                unfinished: found.unfinished,
+                sheet,
             })
-        });
-        ranges.unwrap_or_else(broken)
+        })
     }
 
     /// What a model decides, what its answer is and what binds, in words. The model is run.
@@ -320,27 +309,28 @@ impl Model {
     /// # Errors
     /// [`Error::Model`] if the run fails or there is no such solve.
     pub fn explain(&self, choice: &Choice, options: &Options) -> Result<Sheet, Error> {
-        self.sheet(choice, options, |m, primal, studied| {
+        self.study(choice, options, &|m, primal, studied| {
             let words = explain::of(m, primal, studied).0;
-            Ok(words.into_iter().map(Block::Words).collect())
+            Ok(Sheet(words.into_iter().map(Block::Words).collect()))
         })
     }
 
-    fn sheet(
+    /// Runs the model and looks at the solve that is meant.
+    fn study<T: Send>(
         &self,
         choice: &Choice,
         options: &Options,
-        make: impl Fn(&Machine, &Primal, &Studied) -> Result<Page, Box<diag::Diagnostic>>
-        + Copy
-        + Send
-        + Sync,
-    ) -> Result<Sheet, Error> {
-        let page = on_large_stack(|| self.study(choice, options, &mut |m, p, s| make(m, p, s)));
-        Ok(Sheet(page.unwrap_or_else(broken)?))
+        f: Question<'_, T>,
+    ) -> Result<T, Error> {
+        on_large_stack(|| self.study_here(choice, options, f)).unwrap_or_else(broken)
     }
 
-    /// Runs the model and looks at the solve that is meant.
-    fn study<T>(&self, choice: &Choice, options: &Options, f: Question<'_, T>) -> Result<T, Error> {
+    fn study_here<T>(
+        &self,
+        choice: &Choice,
+        options: &Options,
+        f: Question<'_, T>,
+    ) -> Result<T, Error> {
         let mut host = RunHost::new(self, options);
         let study = StudyChoice {
             model: choice.model.clone(),

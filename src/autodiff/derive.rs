@@ -240,7 +240,13 @@ impl<'g> Derivation<'g> {
                 self.steps.multiply(x, y)
             }
             &Element::Divide(a, b) => self.quotient(a, b, order, local),
-            &Element::PowerInt(a, n) => self.power_int(a, n, order, local),
+            &Element::PowerInt(a, n) => {
+                let x = val(self, a);
+                if n < 0 {
+                    self.check(Action::CheckNonZero, x);
+                }
+                self.whole_power(a, x, n, order, local)
+            }
             &Element::Power(a, b) => self.power(a, b, order, local),
             Element::Call(f, args) => match args[..] {
                 [a] => self.unary(*f, a, order, local),
@@ -279,14 +285,6 @@ impl<'g> Derivation<'g> {
             }
         }
         v
-    }
-
-    fn power_int(&mut self, a: Id, n: i32, order: u8, local: &mut Local) -> Step {
-        let x = self.value[a as usize];
-        if n < 0 {
-            self.check(Action::CheckNonZero, x);
-        }
-        self.whole_power(a, x, n, order, local)
     }
 
     /// xⁿ with its derivatives; domain already checked.

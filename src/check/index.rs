@@ -4,7 +4,7 @@ use super::data::meant_range;
 use super::expansion::range;
 use super::follow::EXCHANGED;
 use super::node::*;
-use super::symbols::{DomainPosition, SymbolKind, UNIVERSE, attribute};
+use super::symbols::{DomainPosition, SymbolKind, UNIVERSE};
 use super::{Checked, Compiler, Failed};
 use crate::diag::{Diagnostic, Severity, nearest};
 use crate::source::Span;
@@ -164,17 +164,7 @@ impl Compiler {
 
     /// Gives a symbol without data another number of indices.
     pub(super) fn reshape(&mut self, s: SymbolId, dim: usize) {
-        let symbol = self.symbols.get_mut(s);
-        symbol.domain = vec![DomainPosition::Universe; dim];
-        let first = symbol.table;
-        let tables = match symbol.kind {
-            SymbolKind::Variable(_) | SymbolKind::Equation(_) => attribute::COUNT,
-            _ => 1,
-        };
-        for t in first..first + tables {
-            let default = self.store.table(t).default_value();
-            *self.store.table_mut(t) = crate::data::table::Table::new(dim, default);
-        }
+        self.store.reshape(self.symbols.get_mut(s), dim);
     }
 
     /// Key of a symbol from its indices, all of which are under control.

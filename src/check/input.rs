@@ -231,34 +231,15 @@ fn record(name: &str, key: &[impl AsRef<str>], number: usize) -> String {
 /// Puts records into an empty table.
 fn fill(table: &mut Table, keys: &[Label], data: &InputData) {
     let dim = table.dim();
-    *table = Table::new(dim, table.default_value());
-    let value = |r: usize| match data {
-        InputData::Values(_, values) => values[r],
-        InputData::Members(..) => 1.0,
+    let values = match data {
+        InputData::Values(_, values) => values.clone(),
+        InputData::Members(keys, _) => vec![1.0; keys.len()],
     };
-    let count = data.keys().len();
-    if dim == 0 {
-        // A scalar: one record without labels.
-        if let InputData::Values(_, values) = data {
-            table.set(&[], values.last().copied().unwrap_or(0.0));
-        }
-        return;
-    }
-    let keys = keys.chunks_exact(dim);
-    if keys.clone().is_sorted_by(|a, b| a < b) {
-        let values = (0..count).map(value).collect();
-        *table = Table::from_sorted(
-            dim,
-            table.default_value(),
-            keys.flatten().copied().collect(),
-            values,
-        );
-        return;
-    }
-    // Of equal keys the last one stays.
-    keys.enumerate()
-        .for_each(|(r, key)| table.append(key, value(r)));
-    table.tidy();
+    // Of equal keys, and of a scalar's records, the last one counts.
+    *table = match (dim, values.last()) {
+        (0, Some(&last)) => Table::from_records(0, table.default_value(), Vec::new(), vec![last]),
+        _ => Table::from_records(dim, table.default_value(), keys.to_vec(), values),
+    };
 }
 
 impl Program {

@@ -23,7 +23,7 @@ pub(crate) mod figure;
 mod follow;
 mod index;
 mod input;
-mod model;
+pub mod model;
 pub(crate) mod option;
 pub(crate) mod output;
 mod statement;
@@ -31,6 +31,7 @@ mod table;
 
 pub(crate) use figure::kinds as figure_kinds;
 
+use crate::autodiff::{function_value, special::factorial};
 use crate::diag::{Diagnostic, Severity};
 use crate::host::Host;
 use crate::model::option::{Refused, Solvers};
@@ -39,6 +40,7 @@ use crate::source::{
 };
 use crate::syntax::Parser;
 use crate::syntax::ast::StmtKind;
+use functions::Callee;
 use node::{Code, DataFunction, EquationDef, Part, Slot, SymbolId};
 use std::cell::Cell;
 use std::sync::Arc;
@@ -403,13 +405,18 @@ impl Known for Compiler {
         !matches!(self.solvers.check("lp", name), Err(Refused::Solver(..)))
     }
 
-    fn date(&self, function: &str, arguments: &[f64]) -> Option<f64> {
-        let (functions::Callee::Data(f), ..) = functions::callee(function)? else {
-            return None;
-        };
-        match (f, arguments) {
-            (DataFunction::JDate, &[year, month, day]) => calendar::jdate(year, month, day),
-            (_, &[day]) => calendar::part(f, day),
+    fn function_value(&self, function: &str, arguments: &[f64]) -> Option<f64> {
+        match (functions::callee(function)?, arguments) {
+            ((Callee::Math(f), least, most), a) if (least..=most).contains(&a.len()) => {
+                Some(function_value(f, a).unwrap_or(f64::NAN))
+            }
+            ((Callee::Data(DataFunction::JDate), ..), &[year, month, day]) => {
+                calendar::jdate(year, month, day)
+            }
+            ((Callee::Data(DataFunction::Fact), ..), &[n]) => {
+                (0.0..=170.0).contains(&n).then(|| factorial(n as u32))
+            }
+            ((Callee::Data(f), ..), &[day]) => calendar::part(f, day),
             _ => None,
         }
     }

@@ -1,7 +1,7 @@
 //! The `solve` statement: which equations, paired with what, of which class.
 
 use super::node::*;
-use super::symbols::{DomainPosition, Symbol, SymbolKind};
+use super::symbols::{DomainPosition, Symbol, SymbolKind, Symbols};
 use super::{Checked, Compiler, Failed};
 use crate::diag::{Diagnostic, nearest};
 use crate::model::instance::Function;
@@ -11,12 +11,91 @@ use crate::syntax::ast::{Ident, ModelItem, Solve, VariableKind};
 
 /// What the list of a model names.
 #[derive(Default)]
-struct Listed {
-    rows: Vec<ModelRow>,
+pub struct Listed {
+    /// Its equations.
+    pub rows: Vec<ModelRow>,
     /// Declared, not defined so far: a later item may take them out.
     undefined: Vec<(SymbolId, Span)>,
     /// Sets that limit variables.
     limits: Vec<(SymbolId, SymbolId)>,
+    /// Something is not known.
+    failed: bool,
+}
+
+impl Listed {
+    /// Adds what items name, in their order; `find` gives the symbol of a name.
+    pub fn collect(
+        &mut self,
+        items: &[ModelItem],
+        symbols: &Symbols,
+        find: &dyn Fn(&Ident) -> Option<SymbolId>,
+        depth: usize,
+    ) {
+        let one = std::slice::from_ref;
+        for item in items.iter().filter(|_| depth <= 50) {
+            let names = match item {
+                ModelItem::Add(name) | ModelItem::Remove(name) | ModelItem::Limit(name, _) => {
+                    one(name)
+                }
+                ModelItem::Pair { rows, .. } => rows,
+                // Declarations have put the equations in its place.
+                ModelItem::All(_) => &[],
+            };
+            for name in names {
+                let Some(id) = find(name) else {
+                    self.failed = true;
+                    continue;
+                };
+                let add = |to: &mut Self| match &symbols.get(id).kind {
+                    SymbolKind::Model(m) => {
+                        let inner = m.items.as_deref().unwrap_or(&[]);
+                        to.collect(inner, symbols, find, depth + 1);
+                    }
+                    _ => to.add_row(symbols, id, None, name.span),
+                };
+                match item {
+                    ModelItem::Limit(_, sets) => {
+                        let sets = sets.iter().filter_map(find);
+                        self.limits.extend(sets.map(|set| (id, set)));
+                    }
+                    ModelItem::Pair { column, .. } => match find(column) {
+                        None => self.failed = true,
+                        pair => self.add_row(symbols, id, pair, name.span.to(column.span)),
+                    },
+                    ModelItem::Remove(_) => {
+                        let mut gone = Self::default();
+                        add(&mut gone);
+                        let there = |d| gone.rows.iter().any(|g| g.definition == d);
+                        self.rows.retain(|r| !there(r.definition));
+                        let there = |s| gone.undefined.iter().any(|g| g.0 == s);
+                        self.undefined.retain(|u| !there(u.0));
+                        self.failed |= gone.failed;
+                    }
+                    _ => add(self),
+                }
+            }
+        }
+    }
+
+    /// Adds an equation; a pair of one that is there already becomes its.
+    fn add_row(&mut self, symbols: &Symbols, e: SymbolId, pair: Option<SymbolId>, span: Span) {
+        let SymbolKind::Equation(defined) = symbols.get(e).kind else {
+            return;
+        };
+        let Some(definition) = defined else {
+            return self.undefined.push((e, span));
+        };
+        let of_it = |r: &&mut ModelRow| r.definition == definition;
+        let mut there = self.rows.iter_mut().filter(of_it);
+        match there.find(|r| r.pair.is_none() || pair.is_none() || r.pair == pair) {
+            Some(r) => r.pair = r.pair.or(pair),
+            None => self.rows.push(ModelRow {
+                definition,
+                pair,
+                span,
+            }),
+        }
+    }
 }
 
 impl Compiler {
@@ -35,9 +114,13 @@ impl Compiler {
         let Some(using) = ProblemType::from_name(&s.using.name) else {
             return self.no_problem_type(&s.using);
         };
-        let items = info.items.clone().unwrap_or_default();
         let mut listed = Listed::default();
-        self.collect(&items, &mut listed, 0)?;
+        let find = |id: &Ident| self.named(id).filter(|s| !self.is_torn(*s));
+        let items = info.items.as_deref().unwrap_or(&[]);
+        listed.collect(items, &self.symbols, &find, 0);
+        if listed.failed {
+            return Err(Failed);
+        }
         self.not_defined(&listed.undefined)?;
         let Listed {
             mut rows, limits, ..
@@ -194,92 +277,6 @@ impl Compiler {
             }
         }
         Ok(s)
-    }
-
-    /// What a list of model items names, in order.
-    fn collect(&mut self, items: &[ModelItem], listed: &mut Listed, depth: usize) -> Checked<()> {
-        if depth > 50 {
-            return Ok(());
-        }
-        let mut failed = false;
-        for item in items {
-            match item {
-                // Declarations have put the equations in its place.
-                ModelItem::All(_) => {}
-                ModelItem::Limit(variable, sets) => {
-                    let v = self.lookup(variable)?;
-                    for s in sets {
-                        listed.limits.push((v, self.lookup_set(s)?));
-                    }
-                }
-                ModelItem::Add(name) => {
-                    let Ok(id) = self.lookup(name) else {
-                        failed = true;
-                        continue;
-                    };
-                    match self.symbols.get(id).kind.clone() {
-                        SymbolKind::Model(m) => {
-                            let inner = m.items.clone().unwrap_or_default();
-                            failed |= self.collect(&inner, listed, depth + 1).is_err();
-                        }
-                        _ => self.add_row(id, None, name.span, listed),
-                    }
-                }
-                ModelItem::Remove(name) => {
-                    let id = self.lookup(name)?;
-                    match self.symbols.get(id).kind.clone() {
-                        SymbolKind::Model(m) => {
-                            let mut gone = Listed::default();
-                            let inner = m.items.clone().unwrap_or_default();
-                            self.collect(&inner, &mut gone, depth + 1)?;
-                            let left = |r: &ModelRow| {
-                                !gone.rows.iter().any(|g| g.definition == r.definition)
-                            };
-                            listed.rows.retain(left);
-                            let left =
-                                |u: &(SymbolId, Span)| !gone.undefined.iter().any(|g| g.0 == u.0);
-                            listed.undefined.retain(left);
-                        }
-                        SymbolKind::Equation(Some(d)) => {
-                            listed.rows.retain(|r| r.definition != d);
-                        }
-                        SymbolKind::Equation(None) => listed.undefined.retain(|u| u.0 != id),
-                        _ => {}
-                    }
-                }
-                ModelItem::Pair {
-                    rows: names,
-                    column,
-                } => {
-                    let v = self.lookup(column)?;
-                    for n in names {
-                        let e = self.lookup(n)?;
-                        self.add_row(e, Some(v), n.span.to(column.span), listed);
-                    }
-                }
-            }
-        }
-        if failed { Err(Failed) } else { Ok(()) }
-    }
-
-    /// Puts an equation into a list; a pair of one that is there already becomes its.
-    fn add_row(&self, e: SymbolId, pair: Option<SymbolId>, span: Span, listed: &mut Listed) {
-        let SymbolKind::Equation(defined) = self.symbols.get(e).kind else {
-            return;
-        };
-        let Some(definition) = defined else {
-            return listed.undefined.push((e, span));
-        };
-        let of_it = |r: &&mut ModelRow| r.definition == definition;
-        let mut there = listed.rows.iter_mut().filter(of_it);
-        match there.find(|r| r.pair.is_none() || pair.is_none() || r.pair == pair) {
-            Some(r) => r.pair = r.pair.or(pair),
-            None => listed.rows.push(ModelRow {
-                definition,
-                pair,
-                span,
-            }),
-        }
     }
 
     /// Refuses equations that no `..` defines and that nothing takes out of the model.

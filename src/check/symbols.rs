@@ -181,6 +181,19 @@ impl Store {
         &mut self.tables[id as usize]
     }
 
+    /// Gives a symbol without data another number of indices.
+    pub(super) fn reshape(&mut self, symbol: &mut Symbol, dim: usize) {
+        symbol.domain = vec![DomainPosition::Universe; dim];
+        let tables = if symbol.has_attributes() {
+            attribute::COUNT
+        } else {
+            1
+        };
+        for t in symbol.table..symbol.table + tables {
+            *self.table_mut(t) = Table::new(dim, self.table(t).default_value());
+        }
+    }
+
     /// Gives a symbol, or one attribute of it, its default values.
     pub fn clear(&mut self, symbol: &Symbol, attribute: Option<u32>) {
         let offsets = match (&symbol.kind, attribute) {

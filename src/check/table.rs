@@ -243,19 +243,7 @@ impl Compiler {
 
     fn fill_cell(&mut self, s: SymbolId, lines: &mut Lines, cell: &Cell) -> Checked<()> {
         if cell.first {
-            let row = match self.familiar_line(lines, cell.row) {
-                true => {
-                    // The room of the row before is used again.
-                    let mut labels = match std::mem::take(&mut lines.row) {
-                        Line::Labels(before) => before,
-                        _ => Vec::new(),
-                    };
-                    labels.clear();
-                    labels.extend_from_slice(&lines.familiar.key[..cell.row.len()]);
-                    Line::Labels(labels)
-                }
-                false => self.table_line(s, 0, cell.row, lines.name),
-            };
+            let row = self.table_line(s, 0, cell.row, lines.name);
             lines.row = self.not_again(row, &mut lines.rows, cell.row_span, "row");
         }
         let value = match cell.value {
@@ -349,19 +337,6 @@ impl Compiler {
             }
         }
         Line::Open
-    }
-
-    /// Finds the labels of a row that has one at each position, and none that is new to its set.
-    fn familiar_line(&mut self, lines: &mut Lines, key: &[KeyPart]) -> bool {
-        set_prefix(key).is_none()
-            && key.len() <= lines.familiar.key.len()
-            && key.iter().enumerate().all(|(p, part)| match part {
-                KeyPart::Label { text, .. } => {
-                    lines.defines.get(p) != Some(&true)
-                        && lines.familiar.find(&mut self.store, p, text)
-                }
-                _ => false,
-            })
     }
 
     /// The labels of a row or column, refused if they came before.

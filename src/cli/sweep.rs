@@ -468,20 +468,6 @@ fn slurm(a: &SweepArgs, jobs: usize, points: usize) -> Result<u8, String> {
 mod tests {
     use super::*;
 
-    /// A name that stands for nothing, and a value that is no number, would give equal rows.
-    #[test]
-    fn names_and_values_are_checked() {
-        let text = "$if not set f $set f 0.65\nScalar s, n / 1 /;\nSet i / a /;\nParameter p(i);\ns = %f%*n;";
-        let model = Model::from_text("m.blk", text);
-        let wrong = |name: &str, values: &[&str]| {
-            let point = |v: &&str| vec![(name.to_string(), v.to_string())];
-            check_names(&model, &values.iter().map(point).collect::<Vec<_>>()).is_err()
-        };
-        assert!(!wrong("F", &["1", "x"]) && !wrong("n", &["1", "-1"]));
-        assert!(wrong("g", &["1", "2"]) && wrong("p", &["1", "2"]) && wrong("n", &["1", "2x"]));
-        assert!(wrong("n", &["1", "inf"]) && wrong("n", &["1:3"]));
-    }
-
     /// What only the run reads counts too.
     #[test]
     fn data_that_have_changed() -> std::io::Result<()> {

@@ -132,11 +132,12 @@ impl Table {
         }
     }
 
-    /// A table from records that are sorted and distinct; values equal to the default are skipped.
-    pub fn from_sorted(dim: usize, default: f64, keys: Vec<Label>, values: Vec<f64>) -> Self {
+    /// A table from records; of equal keys the last one counts, and values equal to the default are skipped.
+    pub fn from_records(dim: usize, default: f64, keys: Vec<Label>, values: Vec<f64>) -> Self {
         let mut t = Self::new(dim, default);
+        let in_order = dim == 0 || keys.chunks_exact(dim).is_sorted_by(|a, b| before(a, b));
         t.special = Special::among(&values);
-        t.sorted = values.len();
+        t.sorted = if in_order { values.len() } else { 0 };
         t.dead = values.iter().filter(|&&v| v == default).count();
         t.keys = keys;
         t.values = values;
@@ -389,16 +390,6 @@ impl Table {
         self.dim > 0 && self.sorted == n && (n == 0 || before(self.key(n as u32 - 1), key))
     }
 
-    /// Appends a record whose key is known to be new, without keeping order (call [`Table::tidy`] after).
-    pub fn append(&mut self, key: &[Label], value: f64) {
-        let n = self.values.len();
-        let in_order = self.sorted == n && (n == 0 || self.key(n as u32 - 1) < key);
-        self.special = self.special.max(Special::of(value));
-        self.index.take();
-        self.push(key, value);
-        self.sorted += usize::from(in_order);
-    }
-
     /// Removes everything.
     pub fn clear(&mut self) {
         *self = Self::new(self.dim, self.default);
@@ -460,7 +451,7 @@ impl Table {
         self.moved();
     }
 
-    /// Stores many records (sorted by key, distinct) at once.
+    /// Stores many records at once, one after the other.
     pub fn merge(&mut self, keys: &[Label], values: &[f64]) {
         let d = self.dim;
         if d == 0 {
@@ -470,7 +461,7 @@ impl Table {
             return;
         }
         if self.is_empty() {
-            *self = Self::from_sorted(d, self.default, keys.to_vec(), values.to_vec());
+            *self = Self::from_records(d, self.default, keys.to_vec(), values.to_vec());
             return;
         }
         if values.len() < 8 || values.len() * 16 < self.values.len() {
@@ -480,38 +471,9 @@ impl Table {
             return;
         }
         self.tidy();
-        let (old_keys, old_values) = (
-            std::mem::take(&mut self.keys),
-            std::mem::take(&mut self.values),
-        );
-        let mut t = Self::new(d, self.default);
-        t.keys.reserve(old_keys.len() + keys.len());
-        t.values.reserve(old_values.len() + values.len());
-        let mut old = 0;
-        let default = self.default;
-        let mut put = |k: &[Label], v: f64| {
-            if v != default {
-                t.keys.extend_from_slice(k);
-                t.values.push(v);
-            }
-        };
-        for (k, &v) in keys.chunks_exact(d).zip(values) {
-            while old < old_values.len() && old_keys[old * d..(old + 1) * d] < *k {
-                put(&old_keys[old * d..(old + 1) * d], old_values[old]);
-                old += 1;
-            }
-            if old < old_values.len() && old_keys[old * d..(old + 1) * d] == *k {
-                old += 1;
-            }
-            put(k, v);
-        }
-        while old < old_values.len() {
-            put(&old_keys[old * d..(old + 1) * d], old_values[old]);
-            old += 1;
-        }
-        t.sorted = t.values.len();
-        t.special = Special::among(&t.values);
-        *self = t;
+        self.keys.extend_from_slice(keys);
+        self.values.extend_from_slice(values);
+        self.tidy();
     }
 
     /// Number of different labels at each position (tidy tables).

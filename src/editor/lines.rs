@@ -4,7 +4,7 @@
 //! This looks at one file as it stands. It knows the directives that change the marks of comments and those that take
 //! lines out; it follows no condition and reads no other file.
 
-use crate::source::past_text;
+use crate::source::Marks;
 
 /// What a line is.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -43,32 +43,10 @@ pub(super) struct Lines {
     pub comments: Vec<Piece>,
 }
 
-/// Marks of comments.
-struct Marks {
-    comment: u8,
-    dollar: u8,
-    eol: Vec<u8>,
-    eol_on: bool,
-    inline: (Vec<u8>, Vec<u8>),
-    inline_on: bool,
-    slashes: bool,
-    fixed: bool,
-}
-
 /// The directive that a line begins with, in lower case, and what stands behind it.
-pub(super) fn directive(line: &str, dollar: u8) -> Option<(String, &str)> {
-    let bytes = line.as_bytes();
-    let first = bytes.iter().position(|b| !matches!(b, b' ' | b'\t'))?;
-    let rest = match bytes[first] == dollar && bytes.get(first + 1) == Some(&dollar) {
-        true => &line[first + 2..],
-        false if bytes[0] == dollar => &line[1..],
-        false => return None,
-    };
-    let rest = rest.trim_start_matches([' ', '\t']);
-    let end = rest
-        .find(|c: char| !c.is_ascii_alphanumeric() && c != '_' && c != '.')
-        .unwrap_or(rest.len());
-    Some((rest[..end].to_ascii_lowercase(), &rest[end..]))
+pub(super) fn directive<'t>(line: &'t str, marks: &Marks) -> Option<(String, &'t str)> {
+    let (word, end) = marks.directive_name(line)?;
+    Some((word.to_ascii_lowercase(), &line[end..]))
 }
 
 /// The directive that ends the lines which this one takes out.
@@ -86,26 +64,17 @@ impl Lines {
     /// Takes a text apart; `slashes`: `//` begins a comment, as in a `.blk`.
     pub(super) fn of(text: &str, slashes: bool) -> Self {
         let mut lines = Self::default();
-        let mut marks = Marks {
-            comment: b'*',
-            dollar: b'$',
-            eol: b"!!".to_vec(),
-            eol_on: false,
-            inline: (b"/*".to_vec(), b"*/".to_vec()),
-            inline_on: false,
-            slashes,
-            fixed: false,
-        };
+        let (mut marks, mut columns) = (Marks::new(slashes), false);
         let mut code = text.as_bytes().to_vec();
         let mut raw_up_to: Option<&'static str> = None;
         let mut continued = false;
-        let mut in_comment = false;
+        let mut depth = 0;
         let mut lo = 0;
         for line in text.split_inclusive('\n') {
             let hi = lo + line.len();
             let body = line.trim_end_matches(['\n', '\r']);
             let kind = if let Some(end) = raw_up_to {
-                match directive(body, marks.dollar) {
+                match directive(body, &marks) {
                     Some((word, _)) if word == end => {
                         raw_up_to = None;
                         LineKind::Directive
@@ -119,13 +88,18 @@ impl Lines {
             } else if continued {
                 continued = body.trim_end().ends_with('\\');
                 LineKind::Directive
-            } else if in_comment {
-                lines.comments_of(&mut code, lo, body, &marks, &mut in_comment);
+            } else if depth > 0 {
+                lines.comments_of(&mut code, lo, body, &marks, &mut depth);
                 LineKind::Fixed
             } else if body.as_bytes().first() == Some(&marks.comment) {
                 LineKind::Comment
-            } else if let Some((word, rest)) = directive(body, marks.dollar) {
-                marks.obey(&word, rest);
+            } else if let Some((word, rest)) = directive(body, &marks) {
+                match (word.strip_prefix("on"), word.strip_prefix("off")) {
+                    (Some(w), _) => drop(marks.switch(w, true)),
+                    (_, Some(w)) => drop(marks.switch(w, false)),
+                    _ => drop(marks.set(&word, rest)),
+                }
+                columns |= matches!(word.as_str(), "mincol" | "maxcol");
                 raw_up_to = taken_out_up_to(&word);
                 if matches!(word.as_str(), "exit" | "stop" | "terminate") {
                     raw_up_to = Some("");
@@ -133,7 +107,7 @@ impl Lines {
                 continued = word == "macro" && body.trim_end().ends_with('\\');
                 LineKind::Directive
             } else {
-                lines.comments_of(&mut code, lo, body, &marks, &mut in_comment);
+                lines.comments_of(&mut code, lo, body, &marks, &mut depth);
                 let first = body.trim_start();
                 if first.len() >= 12
                     && first.is_char_boundary(12)
@@ -141,7 +115,7 @@ impl Lines {
                 {
                     raw_up_to = Some(EMBEDDED);
                     LineKind::Raw
-                } else if marks.fixed || in_comment {
+                } else if marks.delimited || columns || depth > 0 {
                     LineKind::Fixed
                 } else {
                     LineKind::Code
@@ -184,40 +158,15 @@ impl Lines {
         lo: usize,
         body: &str,
         marks: &Marks,
-        in_comment: &mut bool,
+        depth: &mut usize,
     ) {
-        let bytes = body.as_bytes();
-        let mut i = 0;
-        while i < bytes.len() {
-            let from = i;
-            if !*in_comment {
-                let rest = &bytes[i..];
-                let end_of_line = marks.eol_on && rest.starts_with(&marks.eol)
-                    || marks.slashes && rest.starts_with(b"//");
-                if end_of_line {
-                    i = bytes.len();
-                } else if marks.inline_on && rest.starts_with(&marks.inline.0) {
-                    i += marks.inline.0.len();
-                    *in_comment = true;
-                } else {
-                    i = past_text(bytes, i, false);
-                    continue;
-                }
-            }
-            if *in_comment {
-                match memchr::memmem::find(&bytes[i..], &marks.inline.1) {
-                    Some(n) => {
-                        i += n + marks.inline.1.len();
-                        *in_comment = false;
-                    }
-                    None => i = bytes.len(),
-                }
-            }
-            blank(code, lo + from, lo + i);
-            self.comments.push(Piece {
-                lo: lo + from,
-                hi: lo + i,
-            });
+        let found = marks.comments(body.as_bytes(), 0, false, depth);
+        let to_end = (found.end, body.len());
+        let pieces = found.pieces.into_iter().chain([to_end]);
+        for (from, to) in pieces.filter(|p| p.0 < p.1) {
+            let (lo, hi) = (lo + from, lo + to);
+            blank(code, lo, hi);
+            self.comments.push(Piece { lo, hi });
         }
     }
 }
@@ -231,33 +180,3 @@ fn blank(code: &mut [u8], lo: usize, hi: usize) {
 }
 
 const EMBEDDED: &str = "endembeddedcode";
-
-impl Marks {
-    fn obey(&mut self, word: &str, rest: &str) {
-        let mut words = rest.split_whitespace();
-        let mut mark = || words.next().map(|w| w.as_bytes().to_vec());
-        match word {
-            "oneolcom" => self.eol_on = true,
-            "offeolcom" => self.eol_on = false,
-            "oninline" => self.inline_on = true,
-            "offinline" => self.inline_on = false,
-            "ondelim" | "mincol" | "maxcol" => self.fixed = true,
-            "offdelim" => self.fixed = false,
-            "eolcom" => {
-                if let Some(m) = mark() {
-                    self.eol = m;
-                    self.eol_on = true;
-                }
-            }
-            "inlinecom" => {
-                if let (Some(a), Some(b)) = (mark(), mark()) {
-                    self.inline = (a, b);
-                    self.inline_on = true;
-                }
-            }
-            "comment" => self.comment = mark().map_or(self.comment, |m| m[0]),
-            "dollar" => self.dollar = mark().map_or(self.dollar, |m| m[0]),
-            _ => {}
-        }
-    }
-}

@@ -229,7 +229,8 @@ impl Editor {
         let d = self.document(file)?;
         let line = d.scan.lines.line_of(d.offset(at));
         let r = d.scan.lines.range(line, &d.text);
-        let (word, rest) = super::lines::directive(d.text.get(r.lo..r.hi)?, b'$')?;
+        let (word, rest) =
+            super::lines::directive(d.text.get(r.lo..r.hi)?, &crate::source::Marks::new(false))?;
         if !matches!(word.as_str(), "include" | "batinclude") {
             return None;
         }

@@ -8,6 +8,7 @@ use super::project::Document;
 use super::scan::{Role, Statement};
 use super::vocabulary;
 use crate::check::functions;
+use crate::source::Marks;
 use crate::syntax::words::Class;
 use rustc_hash::FxHashMap;
 use serde::Serialize;
@@ -186,7 +187,7 @@ impl Editor {
             }
             if *k == LineKind::Directive {
                 let r = lines.range(n, &d.text);
-                let word = directive(&d.text[r.lo..r.hi], b'$');
+                let word = directive(&d.text[r.lo..r.hi], &Marks::new(false));
                 let word = word.map(|w| w.0).unwrap_or_default();
                 if word.starts_with("ifthen") {
                     open.push(n);

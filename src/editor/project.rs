@@ -2,7 +2,7 @@
 
 use super::place::{LineIndex, Position, Range};
 use super::scan::Scan;
-use crate::host::{Found, Host, HostError};
+use crate::host::{Found, Host, HostError, text_of};
 use rustc_hash::FxHashMap;
 use std::path::{Component, Path, PathBuf};
 
@@ -107,14 +107,7 @@ impl Host for ProjectHost<'_> {
             None => {
                 let files = self.files.ok_or(HostError::NotFound)?;
                 let (known, bytes) = files.read(path, from)?;
-                let text = match String::from_utf8(bytes) {
-                    Ok(text) => text,
-                    // Old GAMS files are often Latin-1.
-                    Err(e) if !has_slashes(&known.to_string_lossy()) => {
-                        e.into_bytes().into_iter().map(char::from).collect()
-                    }
-                    Err(e) => return Err(HostError::NotUtf8(e.utf8_error().valid_up_to())),
-                };
+                let text = text_of(&known, bytes)?;
                 (plain(&known), text)
             }
         };

@@ -4,6 +4,7 @@ use super::Editor;
 use super::lines::{LineKind, directive};
 use super::place::{Location, Position, Range};
 use super::project::Document;
+use crate::source::Marks;
 use crate::syntax::words;
 
 /// A directive that says what stands for a word.
@@ -46,8 +47,8 @@ impl Document {
             let line = &self.text[r.lo..r.hi];
             // `$if not set name $set name text`: each `$` may begin one.
             line.match_indices('$').filter_map(move |(at, _)| {
-                let (word, rest) = directive(&line[at..], b'$')?;
-                let rest = rest.trim_start();
+                let (word, rest) = directive(&line[at..], &Marks::new(false))?;
+                let rest = rest.strip_prefix(".set").unwrap_or(rest).trim_start();
                 let given = &rest[..words::word_end(rest.as_bytes(), 0)];
                 let gives = match between {
                     true => word.starts_with("set") || word.starts_with("eval"),

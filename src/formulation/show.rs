@@ -6,13 +6,13 @@ use super::lower::{Equation, Lowering};
 use super::page::{Block, Page, Setter, formulas, legend};
 use super::tree::*;
 use super::{Formulation, Row, Scope};
+use crate::check::model::Listed;
 use crate::check::node::{Code, CodeKind, ModelRow, SolveCode, SymbolId};
 use crate::check::symbols::{SymbolKind, Symbols};
 use crate::check::visit::each_statement;
 use crate::diag::nearest;
 use crate::run::{Generated, Machine, Studied};
 use crate::source::Span;
-use crate::syntax::ast::ModelItem;
 
 /// What a model consists of, with its objective if some solve says one.
 pub struct Chosen {
@@ -64,11 +64,12 @@ pub fn choose(m: &Machine, code: &[Code], name: Option<&str>) -> Result<Chosen, 
             let SymbolKind::Model(info) = &symbols.get(model).kind else {
                 return Err(unknown(symbols, name));
             };
-            let mut rows = Vec::new();
-            collect(symbols, info.items.as_deref().unwrap_or(&[]), &mut rows, 0);
+            let mut listed = Listed::default();
+            let items = info.items.as_deref().unwrap_or(&[]);
+            listed.collect(items, symbols, &|id| symbols.find(&id.name), 0);
             return Ok(Chosen {
                 model,
-                rows,
+                rows: listed.rows,
                 objective: None,
                 using: None,
                 solve: None,
@@ -104,52 +105,6 @@ pub fn unknown(symbols: &Symbols, name: &str) -> String {
             "there is no model `{name}`; there are: {}",
             names.join(", ")
         ),
-    }
-}
-
-/// The equations of a model that no solve names.
-fn collect(symbols: &Symbols, items: &[ModelItem], rows: &mut Vec<ModelRow>, depth: usize) {
-    let add =
-        |name: &crate::syntax::ast::Ident, pair: Option<SymbolId>, rows: &mut Vec<ModelRow>| {
-            let Some(s) = symbols.find(&name.name) else {
-                return;
-            };
-            match &symbols.get(s).kind {
-                SymbolKind::Equation(Some(definition)) => {
-                    let known = rows.iter_mut().find(|r| r.definition == *definition);
-                    match known {
-                        Some(r) => r.pair = r.pair.or(pair),
-                        None => rows.push(ModelRow {
-                            definition: *definition,
-                            pair,
-                            span: name.span,
-                        }),
-                    }
-                }
-                SymbolKind::Model(m) if depth < 50 => {
-                    collect(symbols, m.items.as_deref().unwrap_or(&[]), rows, depth + 1);
-                }
-                _ => {}
-            }
-        };
-    for item in items {
-        match item {
-            ModelItem::Add(name) => add(name, None, rows),
-            ModelItem::Pair {
-                rows: names,
-                column,
-            } => {
-                let v = symbols.find(&column.name);
-                names.iter().for_each(|n| add(n, v, rows));
-            }
-            ModelItem::Remove(name) => {
-                let gone = symbols.find(&name.name).map(|s| &symbols.get(s).kind);
-                if let Some(SymbolKind::Equation(Some(d))) = gone {
-                    rows.retain(|r| r.definition != *d);
-                }
-            }
-            ModelItem::All(_) | ModelItem::Limit(..) => {}
-        }
     }
 }
 

@@ -12,8 +12,6 @@
 
 mod read;
 mod stream;
-#[cfg(test)]
-mod tests;
 mod write;
 
 pub use read::File;

@@ -132,45 +132,16 @@ impl<'a> Input<'a> {
 #[derive(Default)]
 pub(super) struct Output {
     pub bytes: Vec<u8>,
-    /// What is to be packed.
-    pending: Vec<u8>,
-    packed: bool,
 }
 
 impl Output {
-    /// Begins a part; its place.
-    pub(super) fn begin(&mut self, packed: bool) -> i64 {
-        self.end();
-        self.packed = packed;
+    /// Where the next part begins.
+    pub(super) fn place(&self) -> i64 {
         self.bytes.len() as i64
     }
 
-    /// Ends a part.
-    pub(super) fn end(&mut self) {
-        while !self.pending.is_empty() {
-            self.pack();
-        }
-    }
-
-    fn pack(&mut self) {
-        let n = self.pending.len().min(BLOCK);
-        let plain: Vec<u8> = self.pending.drain(..n).collect();
-        let packed = miniz_oxide::deflate::compress_to_vec_zlib(&plain, 6);
-        let smaller = packed.len() < plain.len();
-        let body = if smaller { packed } else { plain };
-        self.bytes.push(u8::from(smaller));
-        self.bytes.extend((body.len() as u16).to_be_bytes());
-        self.bytes.extend(body);
-    }
-
     pub(super) fn raw(&mut self, bytes: &[u8]) {
-        if !self.packed {
-            return self.bytes.extend_from_slice(bytes);
-        }
-        self.pending.extend_from_slice(bytes);
-        if self.pending.len() >= BLOCK {
-            self.pack();
-        }
+        self.bytes.extend_from_slice(bytes);
     }
 
     pub(super) fn byte(&mut self, b: u8) {

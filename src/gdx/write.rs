@@ -26,7 +26,7 @@ pub struct Contents<'a> {
 }
 
 /// The bytes of a file. Errors: labels, names or symbols that no GDX file can hold.
-pub fn write(contents: &Contents<'_>, packed: bool) -> Result<Vec<u8>> {
+pub fn write(contents: &Contents<'_>) -> Result<Vec<u8>> {
     for l in &contents.labels {
         if l.len() > MAX_LABEL {
             return fail(format!("the label `{l}` is longer than {MAX_LABEL} bytes"));
@@ -38,7 +38,8 @@ pub fn write(contents: &Contents<'_>, packed: bool) -> Result<Vec<u8>> {
     out.byte(123);
     out.text("GAMSGDX");
     out.i32(7);
-    out.i32(i32::from(packed));
+    // Nothing is packed.
+    out.i32(0);
     out.text(concat!("bmod ", env!("CARGO_PKG_VERSION"), ", GDX V7"));
     out.text(concat!("bmod ", env!("CARGO_PKG_VERSION")));
     let index = out.bytes.len();
@@ -48,22 +49,22 @@ pub fn write(contents: &Contents<'_>, packed: bool) -> Result<Vec<u8>> {
     for (symbol, records) in &contents.symbols {
         places.push(match symbol.kind {
             Kind::Alias(_) => 0,
-            _ => data(&mut out, symbol, records, packed)?,
+            _ => data(&mut out, symbol, records)?,
         });
     }
-    let symbols = out.begin(packed);
+    let symbols = out.place();
     list(&mut out, "_SYMB_", &contents.symbols, {
         let mut places = places.iter();
         move |out, (symbol, records)| {
             let at = places.next().copied().unwrap_or(0);
-            entry(out, symbol, records, at, packed);
+            entry(out, symbol, records, at);
         }
     });
-    let texts = out.begin(packed);
+    let texts = out.place();
     list(&mut out, "_SETT_", &contents.texts, |out, t| out.text(t));
-    let labels = out.begin(packed);
+    let labels = out.place();
     list(&mut out, "_UEL_", &contents.labels, |out, l| out.text(l));
-    let acronyms = out.begin(packed);
+    let acronyms = out.place();
     let mut number = FIRST_ACRONYM;
     list(&mut out, "_ACRO_", &contents.acronyms, |out, a| {
         out.text(a);
@@ -71,9 +72,8 @@ pub fn write(contents: &Contents<'_>, packed: bool) -> Result<Vec<u8>> {
         out.i32(number);
         number += 1;
     });
-    let domains = out.begin(packed);
+    let domains = out.place();
     relaxed_domains(&mut out, &contents.symbols);
-    out.end();
     let next = symbols;
     let parts = [symbols, labels, texts, acronyms, next, domains];
     for (k, part) in parts.iter().enumerate() {
@@ -94,7 +94,7 @@ fn list<T>(out: &mut Output, mark: &str, items: &[T], mut write: impl FnMut(&mut
 }
 
 /// An entry of the list of symbols.
-fn entry(out: &mut Output, symbol: &Symbol, records: &Records, at: i64, packed: bool) {
+fn entry(out: &mut Output, symbol: &Symbol, records: &Records, at: i64) {
     let (kind, detail) = match symbol.kind {
         Kind::Set { singleton } => (0, i32::from(singleton)),
         Kind::Parameter => (1, 0),
@@ -111,7 +111,7 @@ fn entry(out: &mut Output, symbol: &Symbol, records: &Records, at: i64, packed: 
     out.i32(0);
     out.byte(u8::from(records.texts.iter().any(|t| *t != 0)));
     out.text(&symbol.text);
-    out.byte(u8::from(is_packed(symbol, packed)));
+    out.byte(0);
     let has_domain = !symbol.domain.is_empty() && !matches!(symbol.kind, Kind::Alias(_));
     out.byte(u8::from(has_domain));
     if has_domain {
@@ -123,11 +123,6 @@ fn entry(out: &mut Output, symbol: &Symbol, records: &Records, at: i64, packed: 
         }
     }
     out.i32(0);
-}
-
-/// GAMS packs the records of symbols with an index.
-fn is_packed(symbol: &Symbol, packed: bool) -> bool {
-    packed && !symbol.domain.is_empty() && !matches!(symbol.kind, Kind::Alias(_))
 }
 
 /// Names of sets that are domains in words only.
@@ -163,7 +158,7 @@ fn relaxed_domains(out: &mut Output, symbols: &[(Symbol, Records)]) {
 }
 
 /// The records of a symbol; their place.
-fn data(out: &mut Output, symbol: &Symbol, records: &Records, packed: bool) -> Result<i64> {
+fn data(out: &mut Output, symbol: &Symbol, records: &Records) -> Result<i64> {
     let dim = symbol.domain.len();
     if dim > MAX_DIMENSION {
         return fail(format!("`{}` has {dim} index positions", symbol.name));
@@ -185,7 +180,7 @@ fn data(out: &mut Output, symbol: &Symbol, records: &Records, packed: bool) -> R
             ));
         }
     }
-    let at = out.begin(is_packed(symbol, packed));
+    let at = out.place();
     out.text("_DATA_");
     out.byte(dim as u8);
     out.i32(-1);

@@ -224,22 +224,3 @@ pub enum BasisStatus {
 
 /// A basis: one status per column, then one per row.
 pub type Basis = Vec<BasisStatus>;
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn codes_have_words() {
-        for code in 1..=19 {
-            let known = ModelStatus::name_of(f64::from(code)).is_some();
-            assert_eq!(known, !matches!(code, 11 | 17), "{code}");
-        }
-        assert_eq!(ModelStatus::IntegerSolution.name(), "integer solution");
-        assert_eq!(
-            SolverStatus::name_of(12.0),
-            Some("solve processing skipped")
-        );
-        assert_eq!(SolverStatus::name_of(7.0), None);
-    }
-}

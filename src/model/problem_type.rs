@@ -137,18 +137,3 @@ impl fmt::Display for ProblemType {
         f.write_str(self.name())
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn names_lead_back() {
-        for t in ProblemType::ALL {
-            assert_eq!(ProblemType::from_name(t.name()), Some(t));
-            assert_ne!(t.relaxation().discrete(), Discrete::Decided);
-        }
-        assert_eq!(ProblemType::from_name("MCP"), Some(Mcp));
-        assert_eq!(ProblemType::from_name("emp"), None);
-    }
-}

@@ -391,34 +391,6 @@ mod tests {
     }
 
     #[test]
-    fn other_files_are_shown_as_well() {
-        let mut map = SourceMap::default();
-        let a = map.add_file("main.blk", "x = 1;\n".into());
-        let b = map.add_file("lib/sets.blk", "set x;\n".into());
-        let first = map.push_copy(a, 0, 1);
-        let second = map.push_copy(b, 4, 5);
-        let d = Diagnostic::warning("E0109", first)
-            .says("`x` is a set")
-            .other(second, "declared here");
-        insta::assert_snapshot!(render(&[d], &map, Look::plain()), @r#"
-E0109
-
-  ! `x` is a set
-   ,-[main.blk:1:1]
- 1 | x = 1;
-   : ^
-   `----
-
-Advice: 
-  > declared here
-   ,-[lib/sets.blk:1:5]
- 1 | set x;
-   :     ^
-   `----
-"#);
-    }
-
-    #[test]
     fn long_lines_and_long_places_are_clipped() {
         let text = format!(
             "parameter p / {} oops 3 {} /;",

@@ -179,24 +179,3 @@ fn time(seconds: f64) -> String {
         format!("{seconds:.0} s")
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn digits_are_ten() {
-        for (v, text) in [
-            (0.0, "0"),
-            (153.675, "153.675"),
-            (-0.642_859_003_312, "-0.6428590033"),
-            (1234.5, "1234.5"),
-            (1e12 / 3.0, "3.333333333e11"),
-            (1e-7, "1.000000000e-7"),
-            (100.0, "100"),
-            (f64::INFINITY, "+INF"),
-        ] {
-            assert_eq!(digits(v), text);
-        }
-    }
-}

@@ -161,8 +161,7 @@ pub fn relate(op: BinaryOp, a: f64, b: f64) -> f64 {
             if a.is_nan() || b.is_nan() {
                 return relate_special(op, a, b);
             }
-            // Numbers from 1e299 on are as good as infinite.
-            yes(compare(op, a.clamp(-1e299, 1e299), b.clamp(-1e299, 1e299)))
+            yes(compare(op, a, b))
         }
     }
 }
@@ -176,18 +175,8 @@ pub fn not(a: f64) -> f64 {
 }
 
 fn compare(op: BinaryOp, a: f64, b: f64) -> bool {
-    // To the order relations infinity is 1e299 and no more.
-    let capped = |x: f64| {
-        if x.is_infinite() {
-            x.signum() * 1e299
-        } else {
-            x
-        }
-    };
-    let (a, b) = match op {
-        BinaryOp::Eq | BinaryOp::Ne => (a, b),
-        _ => (capped(a), capped(b)),
-    };
+    // Numbers from 1e299 on are as good as infinite.
+    let (a, b) = (a.clamp(-1e299, 1e299), b.clamp(-1e299, 1e299));
     match op {
         BinaryOp::Eq => a == b,
         BinaryOp::Ne => a != b,

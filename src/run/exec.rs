@@ -8,7 +8,6 @@ use super::{Flow, Frame, Machine};
 use crate::check::expansion::Tuples;
 use crate::check::node::*;
 use crate::check::symbols::attribute;
-use crate::data::sort::sort_records;
 use crate::data::table::Table;
 use crate::data::universe::Label;
 use crate::data::value::{number, truth};
@@ -16,11 +15,19 @@ use crate::diag::Diagnostic;
 use crate::source::Span;
 use std::ops::ControlFlow;
 
-/// Sorted records to be written.
+/// Records to be written, one after the other.
 #[derive(Default)]
 struct Records {
     keys: Vec<Label>,
     values: Vec<f64>,
+}
+
+impl Records {
+    /// Membership for each value.
+    fn members(&self) -> Vec<f64> {
+        let members = self.values.iter().map(|&v| f64::from(u8::from(truth(v))));
+        members.collect()
+    }
 }
 
 /// Whether the assignment passes over this value of its right side.
@@ -317,7 +324,6 @@ impl Machine<'_> {
         if self.stopped() {
             return;
         }
-        tidy_records(&mut out, key.parts.len());
         self.write(target, out, covers);
     }
 
@@ -390,7 +396,6 @@ impl Machine<'_> {
         }
         *self.current.borrow_mut() = None;
         if !self.stopped() {
-            tidy_records(&mut late, a.key.parts.len());
             self.write(target, late, false);
         }
     }
@@ -465,30 +470,26 @@ impl Machine<'_> {
         out.values.push(v);
     }
 
-    /// Stores records; they are sorted.
+    /// Stores records.
     fn write(&mut self, target: Target, out: Records, covers: bool) {
         match target {
             Target::Table(t) => {
                 let table = self.store.table_mut(t);
                 if covers {
                     let (dim, default) = (table.dim(), table.default_value());
-                    *table = Table::from_sorted(dim, default, out.keys, out.values);
+                    *table = Table::from_records(dim, default, out.keys, out.values);
                 } else {
                     table.merge(&out.keys, &out.values);
                 }
             }
-            Target::Set(t) => {
-                let members = out.values.iter().map(|&v| f64::from(u8::from(truth(v))));
-                let values: Vec<f64> = members.collect();
-                self.store.table_mut(t).merge(&out.keys, &values);
-            }
+            Target::Set(t) => self.store.table_mut(t).merge(&out.keys, &out.members()),
             Target::Singleton(t) => {
                 let dim = self.store.table(t).dim();
-                let records = out.keys.chunks_exact(dim).zip(&out.values);
-                let chosen: Vec<_> = records.filter(|r| truth(*r.1)).map(|r| r.0).collect();
+                let members = out.members();
+                let chosen = Table::from_records(dim, 0.0, out.keys, members);
                 // Whatever is assigned, and whether anything is: the old element goes.
                 self.store.table_mut(t).clear();
-                if let Some(first) = chosen.first() {
+                if let Some(first) = chosen.keys().next() {
                     self.store.table_mut(t).set(first, 1.0);
                     if chosen.len() > 1 && self.options.number("strictsingleton") != Some(0.0) {
                         let n = chosen.len();
@@ -638,7 +639,7 @@ impl Machine<'_> {
             let v = values.last().copied().unwrap_or(0.0);
             table.set(&[], v);
         } else {
-            *table = Table::from_sorted(d, 0.0, keys, values);
+            *table = Table::from_records(d, 0.0, keys, values);
         }
     }
 }
@@ -652,30 +653,4 @@ fn next_order(order: &mut [usize]) -> bool {
     order.swap(k, larger);
     order[k + 1..].reverse();
     true
-}
-
-/// Sorts records by key; of equal keys the last one written stays.
-fn tidy_records(r: &mut Records, d: usize) {
-    let sorted = d == 0
-        || r.keys
-            .chunks_exact(d)
-            .zip(r.keys.chunks_exact(d).skip(1))
-            .all(|(a, b)| a < b);
-    if sorted {
-        return;
-    }
-    let mut order: Vec<u32> = (0..r.values.len() as u32).collect();
-    sort_records(&mut order, &r.keys, d, &(0..d).collect::<Vec<_>>());
-    let key = |i: u32| &r.keys[i as usize * d..(i as usize + 1) * d];
-    let mut keys = Vec::with_capacity(r.keys.len());
-    let mut values: Vec<f64> = Vec::with_capacity(r.values.len());
-    for (n, &i) in order.iter().enumerate() {
-        if n > 0 && key(order[n - 1]) == key(i) {
-            *values.last_mut().expect("there is one before") = r.values[i as usize];
-        } else {
-            keys.extend_from_slice(key(i));
-            values.push(r.values[i as usize]);
-        }
-    }
-    *r = Records { keys, values };
 }

@@ -280,7 +280,7 @@ impl Machine<'_> {
             .map(|k| value(l.get(k), lo.get(k), up.get(k)))
             .collect();
         let default = value(l.default_value(), lo.default_value(), up.default_value());
-        Some(Cow::Owned(Table::from_sorted(
+        Some(Cow::Owned(Table::from_records(
             l.dim(),
             default,
             keys.concat(),

@@ -231,21 +231,9 @@ impl Preprocessor<'_> {
             "warning" => m.warnings = on,
             "strictsingleton" => m.loose_singleton = !on,
             "end" => self.on_end = on,
-            "eolcom" => {
-                self.marks.eol_on = on;
-                self.marks_changed();
-            }
-            "delim" => {
-                self.marks.delimited = on;
-                self.marks_changed();
-            }
-            "nestcom" => self.marks.nested = on,
-            "inline" => {
-                self.marks.inline_on = on;
-                self.marks_changed();
-            }
             // `$offText` and its kin without their partner do nothing.
             "text" | "echo" | "put" if !on => {}
+            w if self.marks.switch(w, on) => self.marks_changed(),
             w if SILENT_SWITCHES.contains(&w) => {}
             _ => return false,
         }
@@ -796,23 +784,7 @@ impl Preprocessor<'_> {
 
     /// Gives what stands behind the marks.
     fn set_mark<'t>(&mut self, word: &str, rest: &'t str, lo: u32, hi: u32) -> Outcome<&'t str> {
-        let mark = |text: &'t str| {
-            let t = text.trim_start();
-            t.split_at(t.find([' ', '\t']).unwrap_or(t.len()))
-        };
-        let (first, behind) = mark(rest);
-        let (second, behind) = match word {
-            "inlinecom" => mark(behind),
-            _ => ("", behind),
-        };
-        let (first, second) = (first.as_bytes().to_vec(), second.as_bytes().to_vec());
-        let good = match word {
-            "inlinecom" => !first.is_empty() && !second.is_empty(),
-            "eolcom" => !first.is_empty(),
-            "comment" => first.len() == 1,
-            _ => first.len() == 1 && !first[0].is_ascii_alphanumeric(),
-        };
-        if !good {
+        let Some(behind) = self.marks.set(word, rest) else {
             let span = self.place(lo, hi);
             let example = match word {
                 "inlinecom" => "$inlineCom { }",
@@ -824,19 +796,7 @@ impl Preprocessor<'_> {
                 .says(format!("`${word}` needs its mark"))
                 .help(format!("for example `{example}`"))
                 .refuse();
-        }
-        match word {
-            "inlinecom" => {
-                self.marks.inline = (first, second);
-                self.marks.inline_on = true;
-            }
-            "eolcom" => {
-                self.marks.eol = first;
-                self.marks.eol_on = true;
-            }
-            "comment" => self.marks.comment = first[0],
-            _ => self.marks.dollar = first[0],
-        }
+        };
         self.marks_changed();
         Ok(behind)
     }

@@ -11,68 +11,25 @@ const DEEPEST: usize = 100;
 
 /// Evaluates the longest expression at the start of `text`; gives its value and its length.
 pub(super) fn evaluate(text: &str, known: &dyn Known) -> Result<(f64, usize), String> {
-    let mut e = Evaluator {
-        text,
-        at: 0,
-        depth: 0,
-        words: true,
-        known,
-    };
-    let value = e.level(0)?;
-    Ok((value, e.at))
+    Evaluator::read(text, known, true, |e| e.level(0))
 }
 
 /// Evaluates the expression between the bracket or brace that opens `text` and its partner; the same.
 pub(crate) fn constant(text: &str, known: &dyn Known) -> Result<(f64, usize), String> {
-    let mut e = Evaluator {
-        text,
-        at: 0,
-        depth: 0,
-        words: false,
-        known,
-    };
-    let value = e.primary()?;
-    Ok((value, e.at))
+    Evaluator::read(text, known, false, Evaluator::primary)
 }
 
 /// A number as `$eval` writes it into a name: up to 15 digits, `1E20` where it is long.
 pub(super) fn number_text(x: f64) -> String {
-    if x == 0.0 {
-        return "0".into();
+    let x: f64 = format!("{x:.14e}").parse().unwrap_or(x);
+    match x.abs() {
+        size if size.is_nan() => "UNDF".into(),
+        f64::INFINITY if x > 0.0 => "+INF".into(),
+        f64::INFINITY => "-INF".into(),
+        0.0 => "0".into(),
+        size if (1e-4..1e15).contains(&size) => x.to_string(),
+        _ => format!("{x:E}"),
     }
-    if !x.is_finite() {
-        return if x.is_nan() {
-            "UNDF".into()
-        } else if x > 0.0 {
-            "+INF".into()
-        } else {
-            "-INF".into()
-        };
-    }
-    let s = format!("{:.14e}", x.abs());
-    let (mantissa, exponent) = s.split_once('e').unwrap_or((&s, "0"));
-    let exponent: i32 = exponent.parse().unwrap_or(0);
-    let digits: String = mantissa.chars().filter(char::is_ascii_digit).collect();
-    let digits = digits.trim_end_matches('0');
-    let sign = if x < 0.0 { "-" } else { "" };
-    let n = digits.len() as i32;
-    if (0..15).contains(&exponent) {
-        let whole = exponent + 1;
-        if n <= whole {
-            return format!("{sign}{digits}{}", "0".repeat((whole - n) as usize));
-        }
-        return format!(
-            "{sign}{}.{}",
-            &digits[..whole as usize],
-            &digits[whole as usize..]
-        );
-    }
-    if (-4..0).contains(&exponent) {
-        return format!("{sign}0.{}{digits}", "0".repeat((-exponent - 1) as usize));
-    }
-    let (first, rest) = digits.split_at(1);
-    let point = if rest.is_empty() { "" } else { "." };
-    format!("{sign}{first}{point}{rest}E{exponent}")
 }
 
 struct Evaluator<'a> {
@@ -97,7 +54,28 @@ const LEVELS: &[&[&str]] = &[
     &["**", "^"],
 ];
 
+/// The levels of relations, sums and powers.
+const RELATION: usize = 3;
+const SUM: usize = 4;
+const POWER: usize = 6;
+
 impl<'a> Evaluator<'a> {
+    fn read(
+        text: &'a str,
+        known: &'a dyn Known,
+        words: bool,
+        what: impl FnOnce(&mut Self) -> Result<f64, String>,
+    ) -> Result<(f64, usize), String> {
+        let mut e = Self {
+            text,
+            at: 0,
+            depth: 0,
+            words,
+            known,
+        };
+        Ok((what(&mut e)?, e.at))
+    }
+
     fn rest(&self) -> &'a str {
         &self.text[self.at..]
     }
@@ -105,6 +83,14 @@ impl<'a> Evaluator<'a> {
     fn blanks(&mut self) {
         let rest = self.rest();
         self.at += rest.len() - rest.trim_start().len();
+    }
+
+    /// Whether a sign stands behind the blanks here; it is passed over.
+    fn sign(&mut self, sign: u8) -> bool {
+        self.blanks();
+        let here = self.rest().as_bytes().first() == Some(&sign);
+        self.at += usize::from(here);
+        here
     }
 
     /// The operator of this level that stands here, passed over.
@@ -151,16 +137,13 @@ impl<'a> Evaluator<'a> {
             }
             return Ok(x);
         }
-        if level == 3 {
+        if level == RELATION {
             // `not` is looser than relations, tighter than `and`.
             self.blanks();
             let rest = self.rest();
-            let not = rest.get(..3).is_some_and(|w| w.eq_ignore_ascii_case("not"))
-                && !rest
-                    .as_bytes()
-                    .get(3)
-                    .is_some_and(u8::is_ascii_alphanumeric);
-            if not {
+            let not = rest.get(..3).is_some_and(|w| w.eq_ignore_ascii_case("not"));
+            let next = rest.as_bytes().get(3);
+            if not && !next.is_some_and(u8::is_ascii_alphanumeric) {
                 self.at += 3;
                 self.enter()?;
                 let x = self.level(level)?;
@@ -168,38 +151,22 @@ impl<'a> Evaluator<'a> {
                 return Ok(f64::from(x == 0.0));
             }
         }
-        if level == 4 {
-            self.blanks();
-            if self.rest().starts_with('-') {
-                self.at += 1;
-                let x = -self.level(5)?;
-                return self.chain(level, x);
+        let x = match level == SUM && self.sign(b'-') {
+            true => -self.level(level + 1)?,
+            false => {
+                let _ = level == SUM && self.sign(b'+');
+                self.level(level + 1)?
             }
-            if self.rest().starts_with('+') {
-                self.at += 1;
-            }
-        }
-        let x = self.level(level + 1)?;
+        };
         self.chain(level, x)
     }
 
     fn chain(&mut self, level: usize, mut x: f64) -> Result<f64, String> {
         let truth = |b: bool| f64::from(u8::from(b));
         while let Some(op) = self.operator(level) {
-            let y = match level {
-                // A sign may stand on the right of a relation or a power.
-                3 => self.level(4)?,
-                2 => self.level(3)?,
-                4..=6 => {
-                    self.blanks();
-                    if self.rest().starts_with('-') && level == 6 {
-                        self.at += 1;
-                        -self.level(level + 1)?
-                    } else {
-                        self.level(level + 1)?
-                    }
-                }
-                _ => self.level(level + 1)?,
+            let y = match level == POWER && self.sign(b'-') {
+                true => -self.level(level + 1)?,
+                false => self.level(level + 1)?,
             };
             x = match op {
                 "<=>" | "eqv" => truth((x != 0.0) == (y != 0.0)),
@@ -236,14 +203,7 @@ impl<'a> Evaluator<'a> {
         let rest = self.rest();
         let bytes = rest.as_bytes();
         match bytes.first() {
-            Some(&open @ (b'(' | b'[' | b'{')) => {
-                self.enter()?;
-                self.at += 1;
-                let x = self.level(0)?;
-                self.depth -= 1;
-                self.close(open)?;
-                Ok(x)
-            }
+            Some(b'(' | b'[' | b'{') => self.inside(|e| e.level(0)),
             Some(c) if c.is_ascii_digit() || *c == b'.' => {
                 match fast_float2::parse_partial::<f64, _>(rest) {
                     Ok((x, n)) if n > 0 => {
@@ -259,18 +219,23 @@ impl<'a> Evaluator<'a> {
         }
     }
 
-    fn close(&mut self, open: u8) -> Result<(), String> {
-        let close = match open {
-            b'(' => ')',
-            b'[' => ']',
-            _ => '}',
+    /// What stands between the parenthesis here and its partner.
+    fn inside<T>(
+        &mut self,
+        read: impl FnOnce(&mut Self) -> Result<T, String>,
+    ) -> Result<T, String> {
+        let close = match self.rest().as_bytes()[0] {
+            b'(' => b')',
+            b'[' => b']',
+            _ => b'}',
         };
-        self.blanks();
-        if self.rest().starts_with(close) {
-            self.at += 1;
-            Ok(())
-        } else {
-            Err(format!("`{close}` is missing"))
+        self.enter()?;
+        self.at += 1;
+        let found = read(self)?;
+        self.depth -= 1;
+        match self.sign(close) {
+            true => Ok(found),
+            false => Err(format!("`{}` is missing", char::from(close))),
         }
     }
 
@@ -311,12 +276,7 @@ impl<'a> Evaluator<'a> {
         let lower = name.to_ascii_lowercase();
         let before = self.at;
         self.blanks();
-        let open = self
-            .rest()
-            .bytes()
-            .next()
-            .filter(|c| matches!(c, b'(' | b'[' | b'{'));
-        let Some(open) = open else {
+        if !self.rest().starts_with(['(', '[', '{']) {
             self.at = before;
             return match lower.as_str() {
                 _ if !self.words => self.scalar(name),
@@ -327,98 +287,43 @@ impl<'a> Evaluator<'a> {
                 "no" | "false" | "eps" => Ok(0.0),
                 _ => self.scalar(name),
             };
-        };
-        self.enter()?;
-        self.at += 1;
+        }
         if lower == "card" {
-            self.blanks();
-            let set = self.name();
-            self.depth -= 1;
-            self.close(open)?;
-            return self
-                .known
-                .card(set)
-                .map(|n| n as f64)
-                .ok_or_else(|| format!("`{set}` has no known number of elements here"));
+            let set = self.inside(|e| {
+                e.blanks();
+                Ok(e.name())
+            })?;
+            let card = self.known.card(set).map(|n| n as f64);
+            return card.ok_or_else(|| format!("`{set}` has no known number of elements here"));
         }
         if lower == "sameas" {
-            let a = self.text();
-            self.blanks();
-            if !self.rest().starts_with(',') {
-                return Err("`sameas` compares two texts".into());
-            }
-            self.at += 1;
-            let b = self.text();
-            self.depth -= 1;
-            self.close(open)?;
-            return Ok(f64::from(u8::from(a.eq_ignore_ascii_case(b))));
+            let same = self.inside(|e| {
+                let a = e.text();
+                match e.sign(b',') {
+                    true => Ok(a.eq_ignore_ascii_case(e.text())),
+                    false => Err("`sameas` compares two texts".into()),
+                }
+            })?;
+            return Ok(f64::from(u8::from(same)));
         }
-        let mut args = Vec::new();
-        self.blanks();
-        while !matches!(self.rest().bytes().next(), None | Some(b')' | b']' | b'}')) {
-            args.push(self.level(0)?);
-            self.blanks();
-            if self.rest().starts_with(',') {
-                self.at += 1;
-            } else {
-                break;
+        let args = self.inside(|e| {
+            let mut args = Vec::new();
+            e.blanks();
+            while !e.rest().is_empty() && !e.rest().starts_with([')', ']', '}']) {
+                args.push(e.level(0)?);
+                if !e.sign(b',') {
+                    break;
+                }
+                e.blanks();
             }
-        }
-        self.depth -= 1;
-        self.close(open)?;
-        function(&lower, &args)
-            .or_else(|| self.known.date(&lower, &args))
-            .ok_or_else(|| format!("`{name}` with {} argument(s) is not known here", args.len()))
+            Ok(args)
+        })?;
+        let value = self.known.function_value(&lower, &args);
+        value.ok_or_else(|| format!("`{name}` with {} argument(s) is not known here", args.len()))
     }
 }
 
 fn first_word(text: &str) -> &str {
     let end = text.find(char::is_whitespace).unwrap_or(text.len());
     &text[..end]
-}
-
-fn function(name: &str, a: &[f64]) -> Option<f64> {
-    Some(match (name, a) {
-        ("abs", [x]) => x.abs(),
-        ("ceil", [x]) => x.ceil(),
-        ("floor", [x]) => x.floor(),
-        ("trunc", [x]) => x.trunc(),
-        ("frac", [x]) => x.fract(),
-        ("round", [x]) => x.round(),
-        ("round", [x, d]) => {
-            let scale = 10f64.powf(*d);
-            (x * scale).round() / scale
-        }
-        ("sign", [x]) => {
-            if *x == 0.0 {
-                0.0
-            } else {
-                x.signum()
-            }
-        }
-        ("sqrt", [x]) => x.sqrt(),
-        ("sqr", [x]) => x * x,
-        ("exp", [x]) => x.exp(),
-        ("log", [x]) => x.ln(),
-        ("log2", [x]) => x.log2(),
-        ("log10", [x]) => x.log10(),
-        ("sin", [x]) => x.sin(),
-        ("cos", [x]) => x.cos(),
-        ("tan", [x]) => x.tan(),
-        ("arctan", [x]) => x.atan(),
-        ("fact", [x]) if *x >= 0.0 && *x <= 170.0 => (1..=*x as u32).map(f64::from).product(),
-        ("power" | "rpower", [x, y]) => x.powf(*y),
-        ("mod", [x, y]) => x % y,
-        ("div", [x, y]) => x / y,
-        ("ifthen", [c, x, y]) => {
-            if *c != 0.0 {
-                *x
-            } else {
-                *y
-            }
-        }
-        ("min", [first, rest @ ..]) => rest.iter().fold(*first, |m, x| m.min(*x)),
-        ("max", [first, rest @ ..]) => rest.iter().fold(*first, |m, x| m.max(*x)),
-        _ => return None,
-    })
 }

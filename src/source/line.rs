@@ -152,28 +152,3 @@ impl Line {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn pieces_lead_back() {
-        let mut map = SourceMap::default();
-        let file = map.add_file("a", "xx abc %n% def\n".into());
-        let mut line = Line::new(file, 3, "abc %n% def");
-        line.replace(&[(4, 7, "long value".into())]);
-        assert_eq!(line.text, "abc long value def");
-        line.replace(&[(0, 3, "y".into())]);
-        assert_eq!(line.text, "y long value def");
-        line.emit(&mut map, 0, line.text.len());
-        assert_eq!(map.expanded(), "y long value def");
-        let place = |lo, hi| {
-            let p = map.place(crate::source::Span::new(lo, hi)).unwrap();
-            (p.lo, p.hi)
-        };
-        assert_eq!(place(0, 1), (3, 6));
-        assert_eq!(place(4, 6), (7, 10));
-        assert_eq!(place(13, 16), (11, 14));
-    }
-}

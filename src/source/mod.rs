@@ -17,6 +17,7 @@ mod evaluate;
 mod line;
 mod macros;
 mod map;
+mod marks;
 mod modes;
 mod preprocess;
 mod variables;
@@ -25,8 +26,9 @@ pub(crate) use conditions::predefined;
 pub(crate) use evaluate::constant;
 pub(crate) use map::whole_characters;
 pub use map::{FileId, Place, SourceFile, SourceMap};
+pub(crate) use marks::Marks;
 pub use modes::{Modes, Switches};
-pub(crate) use preprocess::{DELIMITED, Preprocessor, past_text, quoted_end};
+pub(crate) use preprocess::{DELIMITED, Preprocessor, quoted_end};
 pub use preprocess::{Ending, Known, NothingKnown, PreprocessOptions, ReadData, SymbolKindName};
 pub(crate) use variables::constant as named_constant;
 

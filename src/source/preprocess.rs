@@ -16,9 +16,9 @@ use std::path::{Path, PathBuf};
 use rustc_hash::FxHashMap;
 
 use super::conditions::If;
-use super::directives::word_len;
 use super::line::Line;
 use super::macros::Macros;
+use super::marks::Marks;
 use super::variables::{self, Variables};
 use super::{FileId, Modes, Outcome, SourceMap, Span, Switches};
 use crate::data::input::Input;
@@ -62,15 +62,25 @@ pub type ReadData<'a> = &'a mut dyn FnMut(&str, Span) -> Outcome<Vec<u8>>;
 /// What a directive may ask about the symbols known so far.
 pub trait Known {
     /// The kind of a declared symbol.
-    fn kind(&self, name: &str) -> Option<SymbolKindName>;
+    fn kind(&self, _name: &str) -> Option<SymbolKindName> {
+        None
+    }
     /// Whether it has data.
-    fn is_defined(&self, name: &str) -> bool;
+    fn is_defined(&self, _name: &str) -> bool {
+        false
+    }
     /// Its number of indices.
-    fn dimension(&self, name: &str) -> Option<usize>;
+    fn dimension(&self, _name: &str) -> Option<usize> {
+        None
+    }
     /// Number of elements of a set or of records of a parameter.
-    fn card(&self, name: &str) -> Option<usize>;
+    fn card(&self, _name: &str) -> Option<usize> {
+        None
+    }
     /// Value of a scalar.
-    fn scalar_value(&self, name: &str) -> Option<f64>;
+    fn scalar_value(&self, _name: &str) -> Option<f64> {
+        None
+    }
     /// Whether the language has a function of this name.
     fn is_function(&self, _name: &str) -> bool {
         false
@@ -87,8 +97,8 @@ pub trait Known {
     fn put_open(&self) -> bool {
         false
     }
-    /// A day number, or a part of one: `jdate(2012,3,1)`, `gdow(d)`.
-    fn date(&self, _function: &str, _arguments: &[f64]) -> Option<f64> {
+    /// Value of a function (its name in small letters); `undf` where it has none.
+    fn function_value(&self, _function: &str, _arguments: &[f64]) -> Option<f64> {
         None
     }
     /// Errors reported so far, cleared or not.
@@ -113,23 +123,7 @@ pub trait Known {
 /// For texts that stand alone: no symbol is known.
 pub struct NothingKnown;
 
-impl Known for NothingKnown {
-    fn kind(&self, _: &str) -> Option<SymbolKindName> {
-        None
-    }
-    fn is_defined(&self, _: &str) -> bool {
-        false
-    }
-    fn dimension(&self, _: &str) -> Option<usize> {
-        None
-    }
-    fn card(&self, _: &str) -> Option<usize> {
-        None
-    }
-    fn scalar_value(&self, _: &str) -> Option<f64> {
-        None
-    }
-}
+impl Known for NothingKnown {}
 
 /// How the text ended.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -143,54 +137,8 @@ pub enum Ending {
     Aborted,
 }
 
-/// Marks of comments and directives, which directives change.
-#[derive(Clone, Debug)]
-pub(super) struct Marks {
-    /// First byte of a directive line.
-    pub(super) dollar: u8,
-    /// First byte of a comment line.
-    pub(super) comment: u8,
-    /// `$escape c`: `%c` is `%` and nothing to be replaced.
-    pub(super) escape: Option<u8>,
-    pub(super) eol: Vec<u8>,
-    pub(super) eol_on: bool,
-    pub(super) inline: (Vec<u8>, Vec<u8>),
-    pub(super) inline_on: bool,
-    /// `$onNestCom`: inline comments may stand inside each other.
-    pub(super) nested: bool,
-    pub(super) slashes: bool,
-    /// `$onDelim`: lines of data are lists with commas; each is marked by [`DELIMITED`].
-    pub(super) delimited: bool,
-    /// First and last column that count, from 1.
-    pub(super) columns: (usize, usize),
-}
-
 /// Stands before each line of data under `$onDelim`.
 pub(crate) const DELIMITED: &str = "\u{1e}";
-
-impl Marks {
-    /// If a line is a directive, where its name begins: behind `$` in the first column, or behind `$$`
-    /// after blanks; blanks may follow either.
-    pub(super) fn directive(&self, line: &str) -> Option<usize> {
-        let bytes = line.as_bytes();
-        let blank = |b: &u8| matches!(b, b' ' | b'\t');
-        let first = bytes.iter().position(|b| !blank(b))?;
-        let doubled = bytes[first] == self.dollar && bytes.get(first + 1) == Some(&self.dollar);
-        let start = match doubled {
-            true => first + 2,
-            false if bytes[0] == self.dollar => 1,
-            false => return None,
-        };
-        Some(start + bytes[start..].iter().take_while(|b| blank(b)).count())
-    }
-
-    /// If a line is a directive, its name and where that ends.
-    pub(super) fn directive_name<'a>(&self, line: &'a str) -> Option<(&'a str, usize)> {
-        let start = self.directive(line)?;
-        let end = start + word_len(&line[start..]);
-        Some((&line[start..end], end))
-    }
-}
 
 /// A file being read.
 pub(super) struct Frame {
@@ -233,7 +181,7 @@ pub(crate) struct Preprocessor<'h> {
     pub(crate) on_end: bool,
     /// Inside an inline comment that runs over lines.
     in_comment: Option<Span>,
-    /// Comments open inside it.
+    /// Inline comments that are open.
     comment_depth: usize,
     pub(crate) warnings: Vec<Diagnostic>,
     pub(crate) ending: Ending,
@@ -260,19 +208,7 @@ impl<'h> Preprocessor<'h> {
             names: Variables::default(),
             environment: FxHashMap::default(),
             macros: Macros::default(),
-            marks: Marks {
-                dollar: b'$',
-                comment: b'*',
-                escape: None,
-                eol: b"!!".to_vec(),
-                eol_on: false,
-                inline: (b"/*".to_vec(), b"*/".to_vec()),
-                inline_on: false,
-                nested: false,
-                slashes: options.slash_comments,
-                delimited: false,
-                columns: (1, usize::MAX),
-            },
+            marks: Marks::new(options.slash_comments),
             modes: vec![(0, Modes::default())],
             on_end: false,
             in_comment: None,
@@ -867,58 +803,16 @@ impl<'h> Preprocessor<'h> {
             return line.text.len();
         }
         let bytes = line.text.as_bytes();
-        let mut blanks: Vec<(usize, usize)> = Vec::new();
-        let mut i = from;
-        let mut end = bytes.len();
-        let mut open = self.in_comment.map(|_| from);
-        let mut opened_at = None;
-        while i < bytes.len() {
-            if let Some(start) = open {
-                let find = |mark: &[u8]| memchr::memmem::find(&bytes[i..], mark);
-                let close = find(&m.inline.1);
-                if let Some(n) =
-                    find(&m.inline.0).filter(|n| m.nested && close.is_none_or(|c| *n < c))
-                {
-                    self.comment_depth += 1;
-                    i += n + m.inline.0.len();
-                    continue;
-                }
-                match close {
-                    Some(n) if self.comment_depth > 0 => {
-                        self.comment_depth -= 1;
-                        i += n + m.inline.1.len();
-                    }
-                    Some(n) => {
-                        i += n + m.inline.1.len();
-                        blanks.push((start, i));
-                        open = None;
-                        opened_at = None;
-                        self.in_comment = None;
-                    }
-                    None => i = bytes.len(),
-                }
-                continue;
-            }
-            let rest = &bytes[i..];
-            if m.eol_on && rest.starts_with(&m.eol) || m.slashes && rest.starts_with(b"//") {
-                end = i;
-                break;
-            }
-            if m.inline_on && rest.starts_with(&m.inline.0) {
-                open = Some(i);
-                opened_at = Some(i);
-                i += m.inline.0.len();
-                continue;
-            }
-            i = past_text(bytes, i, directive);
-        }
-        blanks.extend(open.map(|start| (start, bytes.len())));
-        if let (Some(_), Some(at)) = (open, opened_at) {
+        let found = m.comments(bytes, from, directive, &mut self.comment_depth);
+        let mut end = found.end;
+        if let Some(at) = found.opened {
             let (lo, hi) = line.origin(at, at + m.inline.0.len());
             self.in_comment = Some(self.place(lo, hi));
+        } else if self.comment_depth == 0 {
+            self.in_comment = None;
         }
-        let changes: Vec<_> = blanks
-            .into_iter()
+        let inline = found.pieces.into_iter();
+        let changes: Vec<_> = inline
             .map(|(a, b)| (a, b, " ".repeat(line.text[a..b].chars().count())))
             .collect();
         if !changes.is_empty() {
@@ -941,27 +835,6 @@ pub(crate) fn quoted_end(bytes: &[u8], i: usize) -> Option<usize> {
     let rest = &bytes[i + 1..];
     let n = memchr::memchr2(q, b'\n', rest)?;
     (rest[n] == q).then_some(i + n + 2)
-}
-
-/// Where to look for comments next. In quoted texts they are text, also directly behind a word (`i.tl'//'`, but not
-/// `don't`); on lines of directives every quote begins a text, and one without its partner reaches to the end.
-pub(crate) fn past_text(bytes: &[u8], i: usize, directive: bool) -> usize {
-    let q = bytes[i];
-    if q != b'\'' && q != b'"' {
-        return i + 1;
-    }
-    let word = |at: Option<usize>| {
-        let byte = at.and_then(|at| bytes.get(at));
-        byte.is_some_and(u8::is_ascii_alphanumeric)
-    };
-    if !directive && word(i.checked_sub(1)) && word(Some(i + 1)) {
-        return i + 1;
-    }
-    match memchr::memchr2(q, b'\n', &bytes[i + 1..]) {
-        Some(n) if bytes[i + 1 + n] == q => i + n + 2,
-        None if directive => bytes.len(),
-        _ => i + 1,
-    }
 }
 
 /// Whether a byte stands in a quoted text of a line that is no directive: there `%1` is text, such as `'%8.5f'`,

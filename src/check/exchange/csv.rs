@@ -11,7 +11,6 @@ use ::csv::{ReaderBuilder, StringRecord};
 struct Rows {
     header: StringRecord,
     rows: Vec<StringRecord>,
-    lines: Vec<usize>,
 }
 
 impl Rows {
@@ -22,36 +21,31 @@ impl Rows {
             .find(|(_, h)| h.eq_ignore_ascii_case(name))
             .map(|(c, _)| c)
     }
+
+    /// The rows with their lines in the file.
+    fn iter(&self) -> impl Iterator<Item = (&StringRecord, usize)> {
+        let line = |r: &StringRecord| r.position().map_or(0, |p| p.line() as usize);
+        self.rows.iter().map(move |r| (r, line(r)))
+    }
 }
 
 /// Name of the column that makes a file hold many symbols.
 const SYMBOL: &str = "symbol";
 
-fn parse(text: &str) -> Result<Rows, String> {
+fn parse(text: &str) -> Result<Rows, ::csv::Error> {
     // Where the header has no comma, another delimiter separates.
     let first = text.lines().find(|l| !l.trim().is_empty()).unwrap_or("");
     let mut delimiters = [b',', b';', b'\t'].into_iter();
     let delimiter = delimiters.find(|d| first.as_bytes().contains(d));
     let mut reader = ReaderBuilder::new()
-        .has_headers(false)
         .flexible(true)
         .trim(::csv::Trim::All)
         .delimiter(delimiter.unwrap_or(b','))
         .from_reader(text.as_bytes());
-    let mut records = reader.records();
-    let mut out = Rows::default();
-    if let Some(header) = records.next() {
-        out.header = header.map_err(|e| e.to_string())?;
-    }
-    for record in records {
-        let record = record.map_err(|e| e.to_string())?;
-        if !record.iter().all(str::is_empty) {
-            out.lines
-                .push(record.position().map_or(0, |p| p.line() as usize));
-            out.rows.push(record);
-        }
-    }
-    Ok(out)
+    let header = reader.headers()?.clone();
+    let mut rows = reader.into_records().collect::<Result<Vec<_>, _>>()?;
+    rows.retain(|r| !r.iter().all(str::is_empty));
+    Ok(Rows { header, rows })
 }
 
 fn is_long(rows: &Rows) -> bool {
@@ -91,7 +85,7 @@ pub(super) fn read(
         return Ok(());
     };
     let columns = "a CSV file has a header line, and the same columns in every line";
-    let rows = parse(text).map_err(|e| fail(first, e, columns))?;
+    let rows = parse(text).map_err(|e| fail(first, e.to_string(), columns))?;
     if is_long(&rows) {
         let there = names(text);
         for w in items {
@@ -131,7 +125,7 @@ fn long(file: &str, rows: &Rows, w: &Wanted, loading: &mut Loading<'_>) -> Outco
     // Per attribute of variables and equations, in the order in which they appear.
     let mut parts: Vec<(u32, Records)> = Vec::new();
     let is_record = symbol.has_attributes();
-    for (row, &line) in rows.rows.iter().zip(&rows.lines) {
+    for (row, line) in rows.iter() {
         let written = row.get(0).unwrap_or("");
         let mut name = written.splitn(2, '.');
         if !name.next().is_some_and(|n| n.eq_ignore_ascii_case(&w.name)) {
@@ -152,13 +146,12 @@ fn long(file: &str, rows: &Rows, w: &Wanted, loading: &mut Loading<'_>) -> Outco
         if row.len() <= dim {
             return Err(short(file, line, w, row.len(), dim + 2));
         }
-        let part = match parts.iter().position(|p| p.0 == offset) {
-            Some(k) => &mut parts[k].1,
-            None => {
-                parts.push((offset, Records::default()));
-                &mut parts.last_mut().expect("just pushed").1
-            }
-        };
+        let at = parts.iter().position(|p| p.0 == offset);
+        let at = at.unwrap_or_else(|| {
+            parts.push((offset, Records::default()));
+            parts.len() - 1
+        });
+        let part = &mut parts[at].1;
         part.keys
             .extend((0..dim).map(|p| loading.label(&row[p + 1])));
         part.places.push(line);
@@ -169,9 +162,8 @@ fn long(file: &str, rows: &Rows, w: &Wanted, loading: &mut Loading<'_>) -> Outco
             _ => return Err(short(file, line, w, row.len(), at + 1)),
         });
         let text = text_column.and_then(|c| row.get(c));
-        if let Some(t) = text.filter(|t| symbol.is_set() && !t.is_empty()) {
-            let key = part.keys[part.keys.len() - dim..].into();
-            part.texts.insert(key, t.into());
+        if let Some(t) = text.filter(|_| symbol.is_set()) {
+            part.text(dim, t);
         }
     }
     for (offset, records) in parts {
@@ -207,7 +199,7 @@ fn single(file: &str, rows: &Rows, w: &Wanted, loading: &mut Loading<'_>) -> Out
     {
         let headings = rows.header.iter().skip(dim - 1);
         let columns: Vec<u32> = headings.map(|h| loading.label(h)).collect();
-        for (row, &line) in rows.rows.iter().zip(&rows.lines) {
+        for (row, line) in rows.iter() {
             if row.len() < dim {
                 return Err(short(file, line, w, row.len(), rows.header.len()));
             }
@@ -239,7 +231,7 @@ fn single(file: &str, rows: &Rows, w: &Wanted, loading: &mut Loading<'_>) -> Out
         SymbolKind::Parameter { .. } => vec![(rows.column("value", dim).unwrap_or(dim), 0)],
         _ => vec![(dim, 0)],
     };
-    for (row, &line) in rows.rows.iter().zip(&rows.lines) {
+    for (row, line) in rows.iter() {
         if row.len() < dim {
             return Err(short(file, line, w, row.len(), dim));
         }
@@ -249,10 +241,7 @@ fn single(file: &str, rows: &Rows, w: &Wanted, loading: &mut Loading<'_>) -> Out
             let cell = row.get(c).unwrap_or("");
             if symbol.is_set() {
                 r.values.push(1.0);
-                if !cell.is_empty() {
-                    let key = r.keys[r.keys.len() - dim..].into();
-                    r.texts.insert(key, cell.into());
-                }
+                r.text(dim, cell);
             } else if !cell.is_empty() {
                 r.values.push(loading.value(cell, file, line, w)?);
             } else if matches!(symbol.kind, SymbolKind::Parameter { .. }) {

@@ -6,7 +6,7 @@ use crate::check::node::EquationDef;
 use crate::check::symbols::{
     DomainPosition, Store, Symbol, SymbolKind, Symbols, UNIVERSE, attribute,
 };
-use crate::data::table::Table;
+
 use crate::data::universe::Label;
 use crate::data::value::{EPS, NA, UNDF, acronym, as_acronym, is_eps, is_na};
 use crate::diag::Diagnostic;
@@ -78,17 +78,8 @@ pub(super) fn shape(
             continue;
         }
         symbol.open = false;
-        if dim == symbol.dim() {
-            continue;
-        }
-        symbol.domain = vec![DomainPosition::Universe; dim];
-        let tables = match symbol.has_attributes() {
-            true => attribute::COUNT,
-            false => 1,
-        };
-        for t in symbol.table..symbol.table + tables {
-            let default = store.table(t).default_value();
-            *store.table_mut(t) = Table::new(dim, default);
+        if dim != symbol.dim() {
+            store.reshape(symbol, dim);
         }
     }
     Ok(())
@@ -484,7 +475,7 @@ pub(super) fn write(
         }
         contents.symbols.push((head, records));
     }
-    gdx::write(&contents, false)
+    gdx::write(&contents)
 }
 
 fn value(v: f64) -> Value {

@@ -186,13 +186,8 @@ impl Reader<'_> {
             self.records.values.push(1.0);
             match v {
                 Value::Null | Value::Bool(true) | Value::Number(_) => {}
-                Value::String(t) => {
-                    if !t.is_empty() && !t.eq_ignore_ascii_case("yes") {
-                        let key =
-                            self.records.keys[self.records.keys.len() - self.symbol.dim()..].into();
-                        self.records.texts.insert(key, t.as_str().into());
-                    }
-                }
+                Value::String(t) if t.eq_ignore_ascii_case("yes") => {}
+                Value::String(t) => self.records.text(self.symbol.dim(), t),
                 _ => return self.wrong(&format!("record {place} has a value that is no text")),
             }
             return Ok(());

@@ -47,6 +47,16 @@ pub(super) struct Records {
     pub texts: Texts,
 }
 
+impl Records {
+    /// The text of the record whose `dim` labels came last.
+    pub(super) fn text(&mut self, dim: usize, text: &str) {
+        if !text.is_empty() {
+            let key = self.keys[self.keys.len() - dim..].into();
+            self.texts.insert(key, text.into());
+        }
+    }
+}
+
 impl<'a> Loading<'a> {
     pub(super) fn new(symbols: &'a Symbols, store: &'a Store, request: &'a Request<'a>) -> Self {
         Self {
@@ -244,7 +254,7 @@ impl<'a> Loading<'a> {
                 t.set(&[], values.first().copied().unwrap_or(default));
                 t
             } else {
-                Table::from_sorted(dim, default, keys.clone(), values)
+                Table::from_records(dim, default, keys.clone(), values)
             };
             if is_set && dim == 1 {
                 self.members

@@ -4,7 +4,7 @@ use super::{ATTRIBUTES, Wanted};
 use crate::check::symbols::{Store, Symbol, SymbolKind, Symbols, attribute};
 use crate::data::universe::Label;
 use crate::data::value::special_text;
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
 /// Makes the tables of symbols ready for reading in order.
 pub(super) fn tidy(symbols: &Symbols, store: &mut Store, items: &[Wanted]) {
@@ -55,79 +55,64 @@ impl Writer<'_> {
     pub(super) fn csv(&self, items: &[Wanted]) -> String {
         let mut out = csv::Writer::from_writer(Vec::new());
         // A vector takes everything: writing cannot fail.
+        let mut write = |row: &[String]| drop(out.write_record(row));
+        let labels = |key: &[Label]| -> Vec<String> {
+            let names = key.iter().map(|&l| self.store.universe.name(l));
+            names.map(str::to_string).collect()
+        };
+        let text = |s: &Symbol, key: &[Label]| {
+            let text = self.store.element_text(s.table, key);
+            text.unwrap_or("").to_string()
+        };
         if let [one] = items {
             let symbol = self.symbols.rooted(one.symbol);
-            let set = symbol.is_set();
+            let tables = parts(symbol);
             let mut header = self.symbols.domain_names(symbol);
-            match parts(symbol).as_slice() {
-                [_] if set => header.push("text".into()),
+            match tables.as_slice() {
+                [_] if symbol.is_set() => header.push("text".into()),
                 [_] => header.push("value".into()),
                 many => header.extend(many.iter().map(|p| p.0.to_string())),
             }
-            let _ = out.write_record(&header);
+            write(&header);
             for key in keys(self.store, symbol) {
-                let mut row: Vec<String> = key
-                    .iter()
-                    .map(|&l| self.store.universe.name(l).to_string())
-                    .collect();
-                if set {
-                    row.push(
-                        self.store
-                            .element_text(symbol.table, &key)
-                            .unwrap_or("")
-                            .to_string(),
-                    );
+                let mut row = labels(&key);
+                if symbol.is_set() {
+                    row.push(text(symbol, &key));
                 } else {
-                    row.extend(
-                        parts(symbol)
-                            .iter()
-                            .map(|(_, t)| self.value_text(self.store.table(*t).get(&key))),
-                    );
+                    let values = tables.iter().map(|(_, t)| self.store.table(*t).get(&key));
+                    row.extend(values.map(|v| self.value_text(v)));
                 }
-                let _ = out.write_record(&row);
+                write(&row);
             }
         } else {
             let symbols = || items.iter().map(|w| (w, self.symbols.rooted(w.symbol)));
             let dim = symbols().map(|(_, s)| s.dim()).max().unwrap_or(0);
             let texts = symbols().any(|(_, s)| {
-                s.is_set()
-                    && self
-                        .store
-                        .texts
-                        .get(&s.table)
-                        .is_some_and(|t| !t.is_empty())
+                let texts = self.store.texts.get(&s.table);
+                s.is_set() && texts.is_some_and(|t| !t.is_empty())
             });
             let mut header = vec!["symbol".to_string()];
             header.extend((1..=dim).map(|p| format!("label{p}")));
             header.push("value".into());
-            if texts {
-                header.push("text".into());
-            }
-            let _ = out.write_record(&header);
+            header.extend(texts.then(|| "text".into()));
+            write(&header);
             for (w, symbol) in symbols() {
                 for (attribute, table) in parts(symbol) {
                     let short = ATTRIBUTES.iter().find(|a| a.0 == attribute).map(|a| a.1);
                     let name = short.map_or_else(|| w.name.clone(), |a| format!("{}.{a}", w.name));
-                    let t = self.store.table(table);
                     let mut row = |key: &[Label], v: f64| {
                         let mut row = vec![name.clone()];
-                        row.extend(key.iter().map(|&l| self.store.universe.name(l).to_string()));
+                        row.extend(labels(key));
                         row.resize(dim + 1, String::new());
-                        row.push(if symbol.is_set() {
-                            "yes".into()
-                        } else {
-                            self.value_text(v)
-                        });
-                        if texts {
-                            let text = if symbol.is_set() {
-                                self.store.element_text(table, key)
-                            } else {
-                                None
-                            };
-                            row.push(text.unwrap_or("").to_string());
-                        }
-                        let _ = out.write_record(&row);
+                        let (value, comment) = match symbol.is_set() {
+                            true => ("yes".into(), text(symbol, key)),
+                            false => (self.value_text(v), String::new()),
+                        };
+                        row.push(value);
+                        row.extend(texts.then_some(comment));
+                        write(&row);
                     };
+                    let t = self.store.table(table);
                     if t.dim() == 0 {
                         row(&[], t.get(&[]));
                     } else {
@@ -161,16 +146,9 @@ impl Writer<'_> {
                 }
                 [(_, t)] => self.json_number(self.store.table(*t).get(key)),
                 many => {
-                    let m: Map<String, Value> = many
-                        .iter()
-                        .map(|(a, t)| {
-                            (
-                                (*a).to_string(),
-                                self.json_number(self.store.table(*t).get(key)),
-                            )
-                        })
-                        .collect();
-                    Value::Object(m)
+                    let number = |t: u32| self.json_number(self.store.table(t).get(key));
+                    let members = many.iter().map(|(a, t)| (a.to_string(), number(*t)));
+                    Value::Object(members.collect())
                 }
             };
             if symbol.dim() == 0 {
