@@ -87,6 +87,7 @@ impl Default for Options {
             quiet: false,
             all: false,
             color: false,
+            line: None,
             list: None,
             study: None,
             report: SharedReport::default(),
