@@ -1,6 +1,6 @@
 //! Every command in the pages of `docs/` gives the output that stands under it.
 //!
-//! A block ` ```blk NAME ` is a file; a block ` ```console ` holds commands (`$ bmod …`), each followed by what it prints. Pages
+//! A block ` ```blk NAME ` is a file; a block ` ```console ` holds commands (`$ bmod …`, `$ NAME=VALUE bmod …`), each followed by what it prints. Pages
 //! run from top to bottom in a folder of their own, in which `models` is the project's. Times and residuals of the size of rounding are not compared. `UPDATE_DOCS=1`
 //! writes the outputs anew.
 
@@ -22,12 +22,14 @@ fn pages() -> Vec<PathBuf> {
 
 /// What a command prints: standard output, then standard error.
 fn output_of(command: &str, folder: &Path) -> String {
-    let mut words = command.split_whitespace();
-    assert_eq!(words.next(), Some("bmod"), "{command}");
+    let (set, words) = command.split_once("bmod ").expect(command);
+    let set = set.split_whitespace().filter_map(|s| s.split_once('='));
     let out = Command::new(env!("CARGO_BIN_EXE_bmod"))
-        .args(words)
+        .args(words.split_whitespace())
         .current_dir(folder)
         .env_remove("NO_COLOR")
+        .env_remove("COLUMNS")
+        .envs(set)
         .output()
         .expect("bmod runs");
     let text = [out.stdout, out.stderr].map(|b| String::from_utf8(b).expect("UTF-8"));
