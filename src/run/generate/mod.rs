@@ -90,8 +90,11 @@ impl Row {
 /// What `eps` is as a coefficient while a row is built: `eps*x` keeps `x` in the row, and counts, with
 /// the coefficient 0. The size lets it vanish in sums and survive factors.
 const EPS_COEFFICIENT: f64 = 1e-250;
-/// Coefficients below are such.
-const EPS_BELOW: f64 = 1e-200;
+
+/// A number of an instance: what `eps` has become is 0.
+fn without_eps(v: f64) -> f64 {
+    if v.abs() < 1e-200 { 0.0 } else { v }
+}
 
 struct Builder<'m, 'h> {
     m: &'m Machine<'h>,
@@ -324,11 +327,7 @@ impl Builder<'_, '_> {
         for &(c, _) in &row.terms {
             self.place[c as usize] = 0;
         }
-        let rhs = if row.constant == 0.0 {
-            0.0
-        } else {
-            -row.constant
-        };
+        let rhs = without_eps(0.0 - row.constant);
         let empty = !nonlinear && row.terms.iter().all(|t| t.1 == 0.0);
         let pair = pair.filter(|_| self.options.keep_paired);
         let decided = |v| self.fixed_at(v, key).is_some() || self.is_left_out(v, key);
@@ -370,7 +369,7 @@ impl Builder<'_, '_> {
         let matrix = &mut self.instance.matrix;
         for &(c, v) in kept() {
             matrix.column.push(c);
-            matrix.value.push(if v.abs() < EPS_BELOW { 0.0 } else { v });
+            matrix.value.push(without_eps(v));
         }
         matrix.start.push(matrix.column.len());
         let t = self.m.symbols.get(e.symbol).table;

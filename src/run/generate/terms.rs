@@ -3,7 +3,7 @@
 //! A program is the postfix form of one nonlinear term; terms that differ in columns and constants
 //! only share their kernel.
 
-use super::{Builder, EPS_COEFFICIENT, Row};
+use super::{Builder, EPS_COEFFICIENT, Row, without_eps};
 use crate::autodiff::functions::DomainError;
 use crate::check::node::*;
 use crate::data::value::{is_eps, truth};
@@ -122,7 +122,7 @@ impl Builder<'_, '_> {
         Some((c, if several { None } else { var }))
     }
 
-    fn emit_nonlinear(&mut self, n: &Node, coef: f64, frame: &mut Frame, row: &mut Row) {
+    fn emit_nonlinear(&mut self, n: &Node, mut coef: f64, frame: &mut Frame, row: &mut Row) {
         if coef == 0.0 {
             return;
         }
@@ -167,8 +167,10 @@ impl Builder<'_, '_> {
             }
         };
         self.nonlinear_terms += 1;
-        let mut numbers = tape.constants.iter().chain([&coef]);
-        self.not_a_number |= numbers.any(|c| c.is_nan());
+        for c in tape.constants.iter_mut().chain([&mut coef]) {
+            *c = without_eps(*c);
+            self.not_a_number |= c.is_nan();
+        }
         self.instance.nonlinear[k].push(self.row, coef, &tape.columns, &tape.constants);
     }
 

@@ -19,7 +19,7 @@ const MOST_ESCAPES: u32 = 3;
 const NEARLY: f64 = 1e-4;
 
 /// Where so much less is violated than at a point of least violation, that point says nothing.
-const NEARER: f64 = 0.01;
+const NEARER: f64 = 0.1;
 
 /// What rows without multipliers are widened by, in units of their largest entry.
 const WIDTH: f64 = 1e-8;
@@ -66,16 +66,15 @@ impl Driver<'_, '_> {
     /// Where nothing near the start is feasible: from where the linear rows hold, near the middle between the bounds. Whether that
     /// settles it.
     fn doubt(&mut self) -> Result<bool, SolveError> {
-        let violation = |t: &Trial| t.residuals.primal_relative;
-        let before = self.best.as_ref().map_or(f64::INFINITY, violation);
         let middle = self.start_point(From::Middle);
         let near = nearest(&mut lock(&self.problem), &middle, self.budget);
         self.sequential(near.unwrap_or(middle), None, Effort::FULL);
         if self.best.as_ref().is_some_and(Trial::is_feasible) {
             return self.is_settled_by("slqp");
         }
-        let after = self.best.as_ref().map_or(f64::INFINITY, violation);
-        let far = |proof: &Trial| after < before && after <= NEARER * violation(proof);
+        let violation = |t: &Trial| t.residuals.primal_relative;
+        let least = self.best.as_ref().map_or(f64::INFINITY, violation);
+        let far = |proof: &Trial| least <= NEARER * violation(proof);
         self.infeasibility = self.infeasibility.take().filter(|p| !far(&p.0));
         Ok(false)
     }
