@@ -82,20 +82,23 @@ impl Driver<'_, '_> {
         true
     }
 
-    /// Newton's method on the equations, where they leave nothing to choose.
+    /// Newton's method on the equations, where they leave nothing to choose: from where definitions hold, then from the start.
     pub(super) fn attempt_newton(&mut self) {
-        if !self.affords_factors() {
-            return;
-        }
         let budget = self.budget;
-        let run = newton::solve(&mut lock(&self.problem), &mut |failures| {
-            budget.stop_after_failures(failures).is_some()
-        });
-        if let Some(run) = run {
-            self.spend(run.steps);
-            budget.log(format!("{} steps of Newton's method", run.steps));
-            let trial = self.judge(run.x, run.lambda, Ended::Acceptable);
-            self.keep(trial);
+        for start in [self.consistent(), Some(self.start.clone())] {
+            let Some(start) = start.filter(|_| !self.is_settled() && self.affords_factors()) else {
+                continue;
+            };
+            lock(&self.problem).start = start;
+            let run = newton::solve(&mut lock(&self.problem), &mut |failures| {
+                budget.stop_after_failures(failures).is_some()
+            });
+            if let Some(run) = run {
+                self.spend(run.steps);
+                budget.log(format!("{} steps of Newton's method", run.steps));
+                let trial = self.judge(run.x, run.lambda, Ended::Acceptable);
+                self.keep(trial);
+            }
         }
     }
 

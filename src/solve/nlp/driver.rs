@@ -189,7 +189,7 @@ fn pairs(n: usize, sets: &[Vec<u32>]) -> Vec<(usize, usize)> {
 }
 
 /// x moved by up to this fraction of its size (at least by this much), inwards from its bounds; or, where that is asked for, anywhere
-/// between near bounds. With `by` 0 halfway between them, and where they are not near a unit away from 0.
+/// between near bounds. With `by` 0 halfway between them, and where they are not near a unit away from where a variable without a level is.
 fn placed(nlp: &Problem, x: &[f64], by: f64, anywhere: bool, seed: u64) -> Vec<f64> {
     let (lower, upper) = nlp.bounds();
     let mut random = Random(seed);
@@ -199,7 +199,7 @@ fn placed(nlp: &Problem, x: &[f64], by: f64, anywhere: bool, seed: u64) -> Vec<f
             return l + r * (u - l);
         }
         let there = match by {
-            0.0 if x == 0.0 => 1.0,
+            0.0 if x == 0.0_f64.max(l).min(u) => x + 1.0,
             _ => x + (2.0 * r - 1.0) * by * x.abs().max(1.0),
         };
         let inside = match there {
