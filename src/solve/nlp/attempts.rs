@@ -82,23 +82,27 @@ impl Driver<'_, '_> {
         true
     }
 
-    /// Newton's method on the equations, where they leave nothing to choose: from where definitions hold, then from the start.
+    /// Newton's method on the equations, where they leave nothing to choose, from where definitions hold.
     pub(super) fn attempt_newton(&mut self) {
+        if !self.affords_factors() {
+            return;
+        }
         let budget = self.budget;
-        for start in [self.consistent(), Some(self.start.clone())] {
-            let Some(start) = start.filter(|_| !self.is_settled() && self.affords_factors()) else {
-                continue;
-            };
-            lock(&self.problem).start = start;
-            let run = newton::solve(&mut lock(&self.problem), &mut |failures| {
-                budget.stop_after_failures(failures).is_some()
-            });
-            if let Some(run) = run {
-                self.spend(run.steps);
-                budget.log(format!("{} steps of Newton's method", run.steps));
-                let trial = self.judge(run.x, run.lambda, Ended::Acceptable);
-                self.keep(trial);
-            }
+        let start = self.consistent();
+        let mut problem = lock(&self.problem);
+        if let Some(start) = start {
+            problem.start = start;
+        }
+        let run = newton::solve(&mut problem, &mut |failures| {
+            budget.stop_after_failures(failures).is_some()
+        });
+        problem.start.clone_from(&self.start);
+        drop(problem);
+        if let Some(run) = run {
+            self.spend(run.steps);
+            budget.log(format!("{} steps of Newton's method", run.steps));
+            let trial = self.judge(run.x, run.lambda, Ended::Acceptable);
+            self.keep(trial);
         }
     }
 
