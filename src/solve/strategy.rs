@@ -112,7 +112,7 @@ strategies! {
             "1000 steps, or products worth 20 steps with entries",
             "Steihaug 1983; Lin & Moré 1999";
         DifferentiableStart "differentiable_start",
-            "a row has no derivatives at the start, as √x at 0: its variables are moved by a hundredth",
+            "a row has no derivatives at the start, as √x at 0: its variables are moved by up to their size, or 1",
             "100 evaluations of the derivatives",
             "Wächter & Biegler 2006, 3.6";
         ConsistentStart "consistent_start",

@@ -45,8 +45,7 @@ pub(super) const UNBOUNDED: f64 = 1e15;
 /// A point is unbounded evidence from here on, if the interior-point solver stopped with diverging iterates.
 const LARGE: f64 = 1e10;
 
-/// How far a start without derivatives is moved, relative to its size; and how often derivatives are evaluated for that.
-const START_DISPLACEMENT: f64 = 1e-2;
+/// How often derivatives are evaluated to find a start that has some.
 const MAX_START_EVALUATIONS: u32 = 100;
 
 /// Nonlinear equations from which on the interior point may go first.
@@ -212,11 +211,12 @@ fn placed(nlp: &Problem, x: &[f64], by: f64, anywhere: bool, seed: u64) -> Vec<f
     x.iter().zip(lower.iter().zip(upper)).map(place).collect()
 }
 
-/// Where rows have values at the start but no derivatives, as √x at 0: the start with the variables of these rows moved a little.
+/// Where rows have values at the start but no derivatives, as √x at 0: the start with the variables of these rows moved, by up to
+/// their size or 1: where slopes are all but endless steps lead nowhere.
 /// None: there are derivatives, or there are none nearby either.
 fn differentiable(problem: &mut Problem, start: &[f64]) -> Option<Vec<f64>> {
     let mut variables = problem.without_derivatives(start)?;
-    let moved = placed(problem, start, START_DISPLACEMENT, false, 1);
+    let moved = placed(problem, start, 1.0, false, 1);
     let mut x = start.to_vec();
     for _ in 1..MAX_START_EVALUATIONS {
         if variables.iter().all(|&j| x[j] == moved[j]) {

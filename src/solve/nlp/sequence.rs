@@ -47,7 +47,7 @@ impl Driver<'_, '_> {
         };
         self.sequential(start, marginals.as_deref(), effort);
         if self.was_moved && !again && self.is_settled() {
-            // slopes without limit may have held variables at 0 from which they were moved a little only
+            // slopes without limit may hold variables near 0
             self.sequential(self.start_point(From::Middle), None, effort);
         }
         let settled = self.is_settled_by("slqp")?;
