@@ -543,6 +543,11 @@ const FACTOR_WORK: [f64; 2] = [0.5, 50.0];
 const FINE: f64 = 1e-11;
 const USEFUL: f64 = 1e-7;
 
+/// Pushes and pivots of a crossover, for each row and column, where another method is at hand.
+const CLEAN_UP: u64 = 2;
+/// One in so many of these is a push at most: what takes more goes round in circles, and the simplex method gets on better.
+const PUSHES: u64 = 8;
+
 /// Products of entries in the Newton system of an interior point: every entry of A meets those of its row, or of its column if these are fewer.
 fn products(p: &Problem) -> f64 {
     let lines = (0..p.m()).map(|i| p.rows.line(i));
@@ -620,30 +625,30 @@ fn finished(
     ));
     let own = match own.ended == Ended::Failed {
         true => own,
-        false => match finished_from(p, own, accuracy, strategies, budget) {
+        false => match finished_from(p, own, u64::MAX, accuracy, strategies, budget) {
             (done, true) => return done,
             (own, false) => own,
         },
     };
     let mut answer = given(interior::solve(p, None, 1e-10, budget));
     answer.iterations += own.iterations;
-    let (second, _) = finished_from(p, answer, accuracy, strategies, budget);
+    let (second, _) = finished_from(p, answer, u64::MAX, accuracy, strategies, budget);
     match (&second.ended, &own.ended) {
         (Ended::Failed | Ended::TooLarge(_), Ended::Solved) => own,
         _ => second,
     }
 }
 
-/// A vertex and its basis, from an interior point; false: the interior point is all there is.
+/// A vertex and its basis, from an interior point, with so many pushes and pivots at most; false: the interior point is all there is.
 fn finished_from(
     p: &Problem,
     mut answer: Gave,
+    mut most: u64,
     accuracy: Accuracy,
     strategies: Strategies,
     budget: &Budget,
 ) -> (Gave, bool) {
     let mut simplex = Simplex::new(p);
-    let mut most = u64::MAX;
     match answer.ended {
         Ended::Solved => {
             let wide = crossover::is_wide(p, &answer.point) && strategies.run(Strategy::FaceVertex);
@@ -664,7 +669,7 @@ fn finished_from(
             budget.log_timed(&line);
             let of_face = of_face.as_ref().map(|f| &f.point);
             let start = crossover::start(p, &answer.point, of_face);
-            let end = simplex.push(&start, &mut watch(budget, u64::MAX));
+            let end = simplex.push(&start, &mut watch(budget, most / PUSHES));
             let count = simplex.iterations;
             let word = if end.is_ok() { "" } else { ", incomplete" };
             let outside = simplex.violation();
@@ -676,7 +681,7 @@ fn finished_from(
         Ended::Infeasible(ref y) if p.proves_infeasible(y) => return (answer, true),
         // An exact proof is worth some effort.
         Ended::Infeasible(_) => {
-            most = 1000 + 2 * (p.m() + p.n()) as u64;
+            most = most.min(1000 + 2 * (p.m() + p.n()) as u64);
         }
         _ => return (answer, true),
     }
@@ -706,14 +711,22 @@ fn finished_from(
     (done, true)
 }
 
-/// How an interior point and a crossover from it ended, and the simplex method at their vertex if they led to one.
+/// The simplex method at the optimal vertex to which an interior point and a crossover lead, if they do within a
+/// number of pivots.
 pub(in crate::solve) fn crossed_over(
     p: &Problem,
     strategies: Strategies,
     budget: &Budget,
-) -> (Ended, Option<Simplex>) {
-    let gave = finished(p, None, Accuracy::Fast(1e-9), strategies, budget);
-    (gave.ended, gave.engine)
+) -> Option<Simplex> {
+    let goal = [FINE, USEFUL].into();
+    let interior = given(barrier::solve(p, None, None, goal, budget));
+    if interior.ended != Ended::Solved {
+        return None;
+    }
+    let most = CLEAN_UP * (p.m() + p.n()) as u64;
+    let accuracy = Accuracy::Fast(1e-9);
+    let (gave, _) = finished_from(p, interior, most, accuracy, strategies, budget);
+    gave.engine.filter(|_| gave.ended == Ended::Solved)
 }
 
 /// Whether a program has no free column, or no constraint: the simplex method ends at once, and Clarabel does not take it.

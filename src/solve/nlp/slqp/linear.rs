@@ -14,8 +14,9 @@ use crate::solve::lp::simplex::{Basis, Simplex, State};
 use crate::solve::lp::{crossed_over, simplex_work};
 use crate::solve::strategy::Strategies;
 
-/// A program that takes so many times as much from the last basis as an interior point would is left to one, and to a crossover.
-const MOST_WORK: f64 = 2.0;
+/// A program that takes so many times as much from the last basis as an interior point would is left to one, and to a crossover; where these
+/// fail it goes on to the second number.
+const MOST_WORK: [f64; 2] = [2.0, 20.0];
 
 /// Of the program, in its units; and where that is not to be had, of derivatives that differ by many orders of magnitude. What is left of the
 /// rows is left to later steps.
@@ -141,21 +142,29 @@ impl Linear {
             .collect();
         let mut simplex = Simplex::new(&scaled);
         simplex.limit = self.pivots;
-        (simplex.most_work, simplex.warm) = (MOST_WORK * simplex_work(&scaled), true);
+        simplex.warm = true;
         simplex.set_basis(&from);
         let mut last = Ended::Failed;
-        for tolerance in TOLERANCES {
-            (simplex.tolerance, simplex.dual_tolerance) = (tolerance, tolerance);
-            last = simplex.solve(&mut |_| budget.stop().map(Ended::from));
-            if last != Ended::Failed {
+        for most in MOST_WORK {
+            simplex.most_work = most * simplex_work(&scaled);
+            for tolerance in TOLERANCES {
+                (simplex.tolerance, simplex.dual_tolerance) = (tolerance, tolerance);
+                last = simplex.solve(&mut |_| budget.stop().map(Ended::from));
+                if last != Ended::Failed {
+                    break;
+                }
+            }
+            if last != Ended::Iterations || simplex.iterations >= self.pivots {
+                break;
+            }
+            if most == MOST_WORK[0]
+                && let Some(engine) = crossed_over(&scaled, self.strategies, budget)
+            {
+                (last, simplex) = (Ended::Solved, engine);
                 break;
             }
         }
-        let given_up = last == Ended::Iterations && simplex.iterations < self.pivots;
         self.pivots = self.pivots.saturating_sub(simplex.iterations);
-        if given_up && let (ended, Some(engine)) = crossed_over(&scaled, self.strategies, budget) {
-            (last, simplex) = (ended, engine);
-        }
         match last {
             Ended::Solved => Ok(match simplex.point() {
                 Some(point) => Ok((p.scaling.restore(point), simplex.basis())),
