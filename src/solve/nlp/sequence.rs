@@ -35,14 +35,11 @@ impl Driver<'_, '_> {
             return Ok(false);
         }
         let marginals = again.then(|| lock(&self.problem).marginals_of(self.instance));
-        let runs = |s| self.settings.runs(s);
         // Newton's method may have come to a feasible point that is no optimum
         let found = self.best.as_ref().filter(|t| t.is_feasible());
         let start = match found {
             Some(found) if !again => found.x.clone(),
-            None if !again && runs(Strategy::ConsistentStart) => {
-                self.consistent().unwrap_or_else(|| self.start.clone())
-            }
+            None if !again => self.consistent().unwrap_or_else(|| self.start.clone()),
             _ => self.start.clone(),
         };
         self.sequential(start, marginals.as_deref(), effort);
