@@ -240,7 +240,7 @@ fn run(a: &RunArgs) -> Status {
         quiet: a.quiet,
         all: a.all,
         color: Look::stream(is_terminal).color,
-        line: columns(is_terminal).map(|c| c.max(40)),
+        line: columns(is_terminal),
         ..options(&a.solve)?
     };
     let file = name(&a.model);

@@ -18,7 +18,7 @@ const WIDTH: usize = 100;
 /// Characters of a line.
 pub fn width() -> usize {
     let said = crate::report::diagnostics::columns(std::io::stdout().is_terminal());
-    said.unwrap_or(WIDTH).max(40)
+    said.unwrap_or(WIDTH)
 }
 
 /// How formulas are written.

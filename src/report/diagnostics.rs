@@ -47,7 +47,7 @@ impl Look {
         Self {
             color: fancy,
             unicode: fancy,
-            width: columns(is_terminal).unwrap_or(100).clamp(40, 140),
+            width: columns(is_terminal).unwrap_or(100).min(140),
         }
     }
 }
@@ -63,12 +63,13 @@ pub fn set_color(always: Option<bool>) {
     let _ = COLOR.set(always);
 }
 
-/// Columns of the screen: `COLUMNS`, or what the terminal says.
+/// Columns of the screen, 40 at least: `COLUMNS`, or what the terminal says.
 #[cfg(feature = "cli")]
 pub fn columns(is_terminal: bool) -> Option<usize> {
     let said = std::env::var("COLUMNS").ok().and_then(|c| c.parse().ok());
     let terminal = || Some(usize::from(terminal_size::terminal_size()?.0.0));
-    said.or_else(|| is_terminal.then(terminal).flatten())
+    let columns = said.or_else(|| is_terminal.then(terminal).flatten());
+    columns.map(|c: usize| c.max(40))
 }
 
 /// Columns of a source line that are shown.

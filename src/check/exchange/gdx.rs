@@ -6,7 +6,6 @@ use crate::check::node::EquationDef;
 use crate::check::symbols::{
     DomainPosition, Store, Symbol, SymbolKind, Symbols, UNIVERSE, attribute,
 };
-
 use crate::data::universe::Label;
 use crate::data::value::{EPS, NA, UNDF, acronym, as_acronym, is_eps, is_na};
 use crate::diag::Diagnostic;

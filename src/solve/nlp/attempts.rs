@@ -89,15 +89,10 @@ impl Driver<'_, '_> {
         }
         let budget = self.budget;
         let start = self.consistent();
-        let mut problem = lock(&self.problem);
-        if let Some(start) = start {
-            problem.start = start;
-        }
-        let run = newton::solve(&mut problem, &mut |failures| {
+        lock(&self.problem).start = start;
+        let run = newton::solve(&mut lock(&self.problem), &mut |failures| {
             budget.stop_after_failures(failures).is_some()
         });
-        problem.start.clone_from(&self.start);
-        drop(problem);
         if let Some(run) = run {
             self.spend(run.steps);
             budget.log(format!("{} steps of Newton's method", run.steps));

@@ -584,14 +584,14 @@ impl Driver<'_, '_> {
         placed(&problem, &self.start, by, anywhere, seed)
     }
 
-    /// The start with the variables that definitions give a value.
-    pub(super) fn consistent(&self) -> Option<Vec<f64>> {
-        if !self.settings.runs(Strategy::ConsistentStart) {
-            return None;
-        }
-        let problem = lock(&self.problem);
-        let mut evaluator = Evaluator::first_order(self.instance);
-        consistent_start(self.instance, &problem, &mut evaluator, &self.start)
+    /// The start, with the variables that definitions give a value.
+    pub(super) fn consistent(&self) -> Vec<f64> {
+        let found = self.settings.runs(Strategy::ConsistentStart).then(|| {
+            let problem = lock(&self.problem);
+            let mut evaluator = Evaluator::first_order(self.instance);
+            consistent_start(self.instance, &problem, &mut evaluator, &self.start)
+        });
+        found.flatten().unwrap_or_else(|| self.start.clone())
     }
 
     /// Puts a point into the bounds and computes its residuals.

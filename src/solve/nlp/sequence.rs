@@ -39,7 +39,7 @@ impl Driver<'_, '_> {
         let found = self.best.as_ref().filter(|t| t.is_feasible());
         let start = match found {
             Some(found) if !again => found.x.clone(),
-            None if !again => self.consistent().unwrap_or_else(|| self.start.clone()),
+            None if !again => self.consistent(),
             _ => self.start.clone(),
         };
         self.sequential(start, marginals.as_deref(), effort);

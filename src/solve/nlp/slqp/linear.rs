@@ -144,9 +144,10 @@ impl Linear {
         simplex.limit = self.pivots;
         simplex.warm = true;
         simplex.set_basis(&from);
-        let mut last = Ended::Failed;
-        for most in MOST_WORK {
-            simplex.most_work = most * simplex_work(&scaled);
+        let work = simplex_work(&scaled);
+        let limited = |simplex: &mut Simplex, most: f64| {
+            simplex.most_work = most * work;
+            let mut last = Ended::Failed;
             for tolerance in TOLERANCES {
                 (simplex.tolerance, simplex.dual_tolerance) = (tolerance, tolerance);
                 last = simplex.solve(&mut |_| budget.stop().map(Ended::from));
@@ -154,14 +155,13 @@ impl Linear {
                     break;
                 }
             }
-            if last != Ended::Iterations || simplex.iterations >= self.pivots {
-                break;
-            }
-            if most == MOST_WORK[0]
-                && let Some(engine) = crossed_over(&scaled, self.strategies, budget)
-            {
-                (last, simplex) = (Ended::Solved, engine);
-                break;
+            last
+        };
+        let mut last = limited(&mut simplex, MOST_WORK[0]);
+        if last == Ended::Iterations && simplex.iterations < self.pivots {
+            match crossed_over(&scaled, self.strategies, budget) {
+                Some(engine) => (last, simplex) = (Ended::Solved, engine),
+                None => last = limited(&mut simplex, MOST_WORK[1]),
             }
         }
         self.pivots = self.pivots.saturating_sub(simplex.iterations);
