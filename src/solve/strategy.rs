@@ -215,6 +215,10 @@ strategies! {
             "columns that are alike: where a binary one is branched down, so are those that permutations make of it",
             "10⁷ entries of rows, and each of them 20 times",
             "Ostrowski, Linderoth, Rossi & Smriglio 2011";
+        ClauseLearning "clause_learning",
+            "a node without a better point: the bounds of binary columns that led there never meet again",
+            "entries of ten times the program's for each, 1000 clauses",
+            "Marques-Silva & Sakallah 1999, Achterberg 2007";
     }
 }
 

@@ -1,5 +1,7 @@
 //! What bounds imply for other bounds: rows, thresholds and ordered sets, followed until nothing moves.
 
+pub use super::learn::Sum;
+use super::learn::{Learned, Said, Trail};
 use super::model::{FEASIBLE, INTEGRAL, Mip};
 use crate::solve::lp::form::{Activity, term};
 use std::collections::{BTreeMap, VecDeque};
@@ -56,14 +58,20 @@ impl Points {
     }
 }
 
-/// Works on one program; its queue is empty between runs.
+/// Works on one program.
 pub struct Propagator {
     queue: VecDeque<u32>,
     queued: Vec<bool>,
     /// The objective, as a row behind the others.
     objective: Vec<(usize, f64)>,
+    /// Rows behind that.
+    pub(super) learned: Learned,
+    /// How bounds came about, where that is asked for.
+    pub(super) trail: Option<Trail>,
+    /// The row that the last run ended at, and whether its upper side.
+    pub(super) contradicted: Option<(usize, bool)>,
     /// Only points count whose objective is not above this.
-    pub cutoff: f64,
+    pub(super) cutoff: f64,
     /// Bounds of continuous columns are tightened as well, where they were infinite or shrink to a half.
     pub continuous: bool,
     /// Columns whose bounds the last run moved.
@@ -80,6 +88,9 @@ impl Propagator {
             queue: VecDeque::new(),
             queued: vec![false; mip.problem.m() + 1],
             objective: mip.costs().collect(),
+            learned: Learned::new(mip),
+            trail: None,
+            contradicted: None,
             cutoff: f64::INFINITY,
             continuous: false,
             moved: Vec::new(),
@@ -93,20 +104,41 @@ impl Propagator {
             self.enqueue_row(i);
         }
         if mip.problem.cost[column] != 0.0 {
-            self.enqueue_objective();
+            self.enqueue_objective(mip);
+        }
+        for k in 0..self.learned.watching(column).len() {
+            let k = self.learned.watching(column)[k] as usize;
+            self.enqueue_row(mip.problem.m() + 1 + k);
         }
     }
 
-    fn enqueue_row(&mut self, i: usize) {
+    pub(super) fn enqueue_row(&mut self, i: usize) {
+        if i >= self.queued.len() {
+            self.queued.resize(i + 1, false);
+        }
         if !self.queued[i] {
             self.queued[i] = true;
             self.queue.push_back(i as u32);
         }
     }
 
-    fn enqueue_objective(&mut self) {
+    pub(super) fn clear_queue(&mut self) {
+        self.queue
+            .drain(..)
+            .for_each(|i| self.queued[i as usize] = false);
+    }
+
+    pub(super) fn enqueue_objective(&mut self, mip: &Mip) {
         if self.cutoff.is_finite() {
-            self.enqueue_row(self.queued.len() - 1);
+            self.enqueue_row(mip.problem.m());
+        }
+    }
+
+    /// Only points count whose objective is not above this.
+    pub fn limit(&mut self, mip: &Mip, cutoff: f64) {
+        if cutoff != self.cutoff {
+            self.cutoff = cutoff;
+            self.enqueue_objective(mip);
         }
     }
 
@@ -119,11 +151,11 @@ impl Propagator {
         upper: &mut [f64],
     ) -> bool {
         self.moved.clear();
+        self.contradicted = None;
         match columns {
             Some(columns) => columns.iter().for_each(|&j| self.enqueue(mip, j)),
             None => (0..mip.problem.m()).for_each(|i| self.enqueue_row(i)),
         }
-        self.enqueue_objective();
         let mut fine = true;
         let most = self.work + 50 * mip.problem.rows.value.len() + 1000;
         loop {
@@ -131,35 +163,46 @@ impl Propagator {
                 let i = i as usize;
                 self.queued[i] = false;
                 let p = &mip.problem;
-                if i == p.m() {
-                    self.work += self.objective.len();
-                    let objective = std::mem::take(&mut self.objective);
-                    let sides = [f64::NEG_INFINITY, self.cutoff];
-                    let row = objective.iter().copied();
-                    fine &= self.work > most || self.row(mip, row, sides, lower, upper);
-                    self.objective = objective;
-                } else {
-                    let (row, sides) = (p.rows.line(i), [p.row_lower[i], p.row_upper[i]]);
-                    self.work += row.len();
-                    fine &= self.work > most || self.row(mip, row, sides, lower, upper);
+                match i.checked_sub(p.m()) {
+                    None => {
+                        let (row, sides) = (p.rows.line(i), [p.row_lower[i], p.row_upper[i]]);
+                        self.work += row.len();
+                        fine &= self.work > most || self.row(mip, i, row, sides, lower, upper);
+                    }
+                    Some(0) => {
+                        self.work += self.objective.len();
+                        let objective = std::mem::take(&mut self.objective);
+                        let (row, sides) =
+                            (objective.iter().copied(), [f64::NEG_INFINITY, self.cutoff]);
+                        fine &= self.work > most || self.row(mip, i, row, sides, lower, upper);
+                        self.objective = objective;
+                    }
+                    Some(k) => {
+                        self.work += 2;
+                        fine &= match self.learned.say(k - 1, lower, upper) {
+                            Said::Nothing => true,
+                            Said::Implied(j, v) => {
+                                let own = 1.0 - 2.0 * v;
+                                self.set(mip, j, [v, v], Some((i, own)), lower, upper)
+                            }
+                            Said::Contradiction => {
+                                self.contradicted = Some((i, true));
+                                false
+                            }
+                        };
+                    }
                 }
                 if !fine || self.work > most {
-                    self.queue
-                        .drain(..)
-                        .for_each(|i| self.queued[i as usize] = false);
+                    self.clear_queue();
                 }
             }
             let before = self.moved.len();
             if !fine || !self.thresholds_and_sets(mip, lower, upper) {
-                self.queue
-                    .drain(..)
-                    .for_each(|i| self.queued[i as usize] = false);
+                self.clear_queue();
                 return false;
             }
             if self.moved.len() == before || self.work > most {
-                self.queue
-                    .drain(..)
-                    .for_each(|i| self.queued[i as usize] = false);
+                self.clear_queue();
                 return true;
             }
         }
@@ -302,9 +345,11 @@ impl Propagator {
         })
     }
 
+    /// Tightens bounds by row i. False: nothing satisfies it.
     fn row(
         &mut self,
         mip: &Mip,
+        i: usize,
         row: impl Iterator<Item = (usize, f64)> + Clone,
         [least, most]: [f64; 2],
         lower: &mut [f64],
@@ -314,6 +359,7 @@ impl Propagator {
         // What rounding may have done.
         let slack = FEASIBLE * at.size.max(1.0);
         if at.low() > most + slack || at.high() < least - slack {
+            self.contradicted = Some((i, at.low() > most + slack));
             return false;
         }
         let idle_high = most.is_infinite() || at.high() <= most || at.endless[0] > 1;
@@ -362,20 +408,21 @@ impl Propagator {
                     u
                 };
             }
-            if !self.set(mip, j, new_l, new_u, lower, upper) {
+            if !self.set(mip, j, [new_l, new_u], Some((i, a)), lower, upper) {
+                self.contradicted = Some((i, (a > 0.0) == (new_u < lower[j])));
                 return false;
             }
         }
         true
     }
 
-    /// False: the bounds cross.
+    /// Bounds that follow from a row, in which the column has this coefficient. False: they cross.
     fn set(
         &mut self,
         mip: &Mip,
         j: usize,
-        l: f64,
-        u: f64,
+        [l, u]: [f64; 2],
+        row: Option<(usize, f64)>,
         lower: &mut [f64],
         upper: &mut [f64],
     ) -> bool {
@@ -384,7 +431,14 @@ impl Propagator {
             return false;
         }
         if l > lower[j] || u < upper[j] {
+            let before = [lower[j], upper[j]];
             (lower[j], upper[j]) = if l > u { (u, u) } else { (l, u) };
+            if let Some(trail) = &mut self.trail {
+                let now = [lower[j], upper[j]];
+                for side in (0..2).filter(|&side| now[side] != before[side]) {
+                    trail.push(j, side, now[side], row);
+                }
+            }
             self.moved.push(j);
             self.enqueue(mip, j);
         }
@@ -397,10 +451,12 @@ impl Propagator {
             let t = mip.threshold[j];
             if t > 0.0 && lower[j] < t {
                 if upper[j] < t - FEASIBLE * t.max(1.0) && upper[j] > 0.0 {
-                    if !self.set(mip, j, lower[j], 0.0, lower, upper) {
+                    if !self.set(mip, j, [lower[j], 0.0], None, lower, upper) {
                         return false;
                     }
-                } else if lower[j] > FEASIBLE && !self.set(mip, j, t, upper[j], lower, upper) {
+                } else if lower[j] > FEASIBLE
+                    && !self.set(mip, j, [t, upper[j]], None, lower, upper)
+                {
                     return false;
                 }
             }
@@ -420,7 +476,7 @@ impl Propagator {
                 let far = k + reach < last || k > first + reach;
                 if far
                     && (lower[j] != 0.0 || upper[j] != 0.0)
-                    && !self.set(mip, j, 0.0, 0.0, lower, upper)
+                    && !self.set(mip, j, [0.0; 2], None, lower, upper)
                 {
                     return false;
                 }

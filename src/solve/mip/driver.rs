@@ -102,8 +102,8 @@ pub(super) fn search_linear(mip: &Mip, aim: Aim, begin: Begin, control: &mut Con
         let x = reduced.reduce(&x);
         x.iter().zip(&scaling.column).map(|(x, c)| x / c).collect()
     };
-    let runs = |s: &Settings| s.runs(Strategy::OrbitalBranching);
-    let uses_symmetry = begin.convex.is_none() && begin.settings.is_none_or(runs);
+    let runs = |strategy| begin.settings.is_none_or(|s: &Settings| s.runs(strategy));
+    let uses_symmetry = begin.convex.is_none() && runs(Strategy::OrbitalBranching);
     let symmetry = uses_symmetry
         .then(|| Symmetry::find(&reduced.mip))
         .flatten();
@@ -114,6 +114,7 @@ pub(super) fn search_linear(mip: &Mip, aim: Aim, begin: Begin, control: &mut Con
     let explore = Explore {
         mip: &scaled,
         symmetry: symmetry.as_ref(),
+        learns: runs(Strategy::ClauseLearning),
         aim,
         units,
         start: begin.start.map(inner),
@@ -175,16 +176,20 @@ struct Explore<'e> {
     units: Units,
     start: Option<Vec<f64>>,
     symmetry: Option<&'e Symmetry>,
+    learns: bool,
 }
 
 impl Explore<'_> {
     fn run<R: Relaxation>(self, relaxation: R, control: &mut Control) -> Found {
         let near = |mip: &Mip, fixed: &[Change], cutoff: f64, control: &mut Control| {
-            nearby(mip, fixed, cutoff, control)
+            nearby(mip, fixed, cutoff, self.learns, control)
         };
         let mut search = Search::new(self.mip, relaxation, self.aim, self.units);
         search.neighbourhood = Some(&near);
         search.symmetry = self.symmetry;
+        if self.learns {
+            search.learn();
+        }
         if let Some(x) = self.start {
             search.offer(&x, control);
         }
@@ -232,7 +237,13 @@ fn strengthen(mip: &Mip, linear: &mut Linear, rounds: usize, control: &mut Contr
 }
 
 /// A search of a few nodes where some columns are fixed.
-fn nearby(mip: &Mip, fixed: &[Change], cutoff: f64, control: &mut Control) -> Option<Vec<f64>> {
+fn nearby(
+    mip: &Mip,
+    fixed: &[Change],
+    cutoff: f64,
+    learns: bool,
+    control: &mut Control,
+) -> Option<Vec<f64>> {
     let reduced = presolve::reduce(mip, fixed)?;
     let units = Units {
         price: 1.0,
@@ -256,6 +267,9 @@ fn nearby(mip: &Mip, fixed: &[Change], cutoff: f64, control: &mut Control) -> Op
     control.budget.silently(|_| {
         if strengthen(&reduced.mip, &mut linear, 5, &mut sub) != Solved::Infeasible {
             let mut search = Search::new(&reduced.mip, linear, aim, units);
+            if learns {
+                search.learn();
+            }
             search.run(&mut sub);
             best = search.best.take();
         }

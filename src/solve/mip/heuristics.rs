@@ -97,7 +97,7 @@ impl<R: Relaxation> Search<'_, R> {
 
     /// Bounds one column after the other until the relaxation's solution is discrete, or nothing is left.
     fn dive(&mut self, kind: Dive, x: &[f64], control: &mut Control) {
-        let before = (self.lower.clone(), self.upper.clone());
+        let before = self.here();
         let start = self.relaxation.start();
         let spent = control.iterations;
         let mut x = x.to_vec();
@@ -116,7 +116,7 @@ impl<R: Relaxation> Search<'_, R> {
                 self.offer(&x, control);
                 break;
             };
-            let here = (self.lower.clone(), self.upper.clone());
+            let here = self.here();
             let mut done = false;
             let mut ways = vec![(&sides[0], &[][..]), (&sides[1], &[][..])];
             if !others.is_empty() {
@@ -125,7 +125,7 @@ impl<R: Relaxation> Search<'_, R> {
             for (side, others) in ways {
                 if self.apply(side)
                     && self.apply_fitting(others)
-                    && let Solved::Value(v) = self.relaxation.solve(self.cutoff(), control)
+                    && let Solved::Value(v) = self.relax(self.cutoff(), control)
                     && v < self.cutoff()
                 {
                     done = true;
@@ -135,8 +135,7 @@ impl<R: Relaxation> Search<'_, R> {
                     [] => failures += 1,
                     _ => part *= 4,
                 }
-                (self.lower, self.upper) = here.clone();
-                self.send_bounds();
+                self.back_to(here.clone());
             }
             if !done || failures > 8 {
                 break;
@@ -144,8 +143,7 @@ impl<R: Relaxation> Search<'_, R> {
             x = self.relaxation.x().to_vec();
         }
         self.dives.iterations += control.iterations - spent;
-        (self.lower, self.upper) = before;
-        self.send_bounds();
+        self.back_to(before);
         self.relaxation.restart(&start);
     }
 

@@ -1,6 +1,7 @@
 //! The relaxation of a linear program with discrete columns: the simplex method, from basis to basis.
 
 use super::model::{Change, Mip};
+use super::propagate::Sum;
 use super::relaxation::{Control, Relaxation, Solved};
 use crate::solve::lp::Ended;
 use crate::solve::lp::form::Problem;
@@ -17,6 +18,8 @@ pub struct Linear {
     /// At the basis of the last solve.
     pub simplex: Simplex,
     n: usize,
+    /// Multipliers of the rows that show that the last program has no point.
+    empty: Option<Vec<f64>>,
 }
 
 /// A cut: the sum of its terms is not above `side`.
@@ -35,6 +38,7 @@ impl Linear {
         Self {
             simplex: Self::engine(&problem),
             n: problem.n(),
+            empty: None,
             problem,
         }
     }
@@ -118,9 +122,13 @@ impl Relaxation for Linear {
             ended = self.simplex.solve(&mut stop);
         }
         control.iterations = spent + self.simplex.iterations - before;
+        self.empty = None;
         match ended {
             Ended::Solved => Solved::Value(self.value()),
-            Ended::Infeasible(_) => Solved::Infeasible,
+            Ended::Infeasible(y) => {
+                self.empty = Some(y);
+                Solved::Infeasible
+            }
             Ended::Unbounded(direction) => Solved::Unbounded(direction),
             Ended::Iterations if self.simplex.is_beyond_cutoff() => Solved::Cutoff,
             Ended::Failed => Solved::Failed,
@@ -134,6 +142,42 @@ impl Relaxation for Linear {
 
     fn reduced(&self) -> Option<&[f64]> {
         Some(&self.simplex.reduced()[..self.n])
+    }
+
+    fn sum(&self, cutoff: f64) -> Option<Sum> {
+        let p = &self.problem;
+        let (mut terms, mut side) = match &self.empty {
+            Some(_) => (vec![0.0; self.n], 0.0),
+            None if cutoff.is_finite() => (p.cost.clone(), cutoff),
+            None => return None,
+        };
+        // the multipliers of rows are the reduced costs of their activities
+        let y = match &self.empty {
+            Some(y) => y,
+            None => &self.simplex.reduced()[self.n..],
+        };
+        let mut largest: Vec<f64> = terms.iter().map(|t| t.abs()).collect();
+        let top = y.iter().fold(0.0f64, |m, y| m.max(y.abs()));
+        for (i, &y) in y.iter().enumerate().filter(|y| *y.1 != 0.0) {
+            let bound = if y > 0.0 {
+                p.row_lower[i]
+            } else {
+                p.row_upper[i]
+            };
+            if bound.is_finite() {
+                side -= y * bound;
+                for (j, a) in p.rows.line(i) {
+                    terms[j] -= y * a;
+                    largest[j] = largest[j].max((y * a).abs());
+                }
+            } else if y.abs() > 1e-9 * top {
+                return None;
+            }
+        }
+        // but for what rounding left
+        let terms = terms.into_iter().zip(largest).enumerate();
+        let terms = terms.filter(|(_, (a, largest))| a.abs() > 1e-12 * largest);
+        Some((terms.map(|(j, (a, _))| (j, a)).collect(), side))
     }
 
     fn start(&self) -> Self::Start {

@@ -1,6 +1,7 @@
 //! What a search asks of a relaxation.
 
 use super::model::Change;
+use super::propagate::Sum;
 use crate::solve::Budget;
 use crate::solve::lp::Ended;
 
@@ -84,6 +85,12 @@ pub trait Relaxation {
 
     /// Reduced costs there, where the value is a bound and these say how it grows.
     fn reduced(&self) -> Option<&[f64]>;
+
+    /// A row that all points with values below the cutoff satisfy: those of the program with the multipliers of the last solve. Where
+    /// that left nothing below the cutoff, the present bounds contradict it.
+    fn sum(&self, _cutoff: f64) -> Option<Sum> {
+        None
+    }
 
     /// Where it is now, to start from again.
     fn start(&self) -> Self::Start;

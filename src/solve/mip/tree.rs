@@ -223,6 +223,9 @@ enum Fixed {
     Empty,
 }
 
+/// Lower and upper bounds, and how many steps led to them.
+pub(super) type Here = (Vec<f64>, Vec<f64>, usize);
+
 /// How many nodes may be divided without a value of their relaxation.
 const FAILURES: u32 = 200;
 
@@ -301,6 +304,11 @@ impl<'a, R: Relaxation> Search<'a, R> {
         self.aim.cheat / self.units.price
     }
 
+    /// From here on contradictions teach clauses.
+    pub fn learn(&mut self) {
+        self.propagator.trace(self.mip);
+    }
+
     /// Runs from the root.
     pub fn run(&mut self, control: &mut Control) -> End {
         let mut end = self.search(control);
@@ -322,6 +330,9 @@ impl<'a, R: Relaxation> Search<'a, R> {
         let (done, open): (Vec<_>, Vec<_>) = nodes.partition(|n| all || n.bound >= cutoff);
         self.open = open.into();
         done.iter().for_each(|n| self.fate(n.number, "bound"));
+        let [all, learned, said] = self.propagator.counts();
+        let line = format!("contradictions: {all}, {learned} learned from, {said} uses");
+        control.budget.log(&line);
         self.log(control, true);
         end
     }
@@ -417,6 +428,7 @@ impl<'a, R: Relaxation> Search<'a, R> {
     fn load(&mut self, path: &Option<Rc<Path>>) -> bool {
         self.lower.copy_from_slice(&self.root[0]);
         self.upper.copy_from_slice(&self.root[1]);
+        self.propagator.at_root(self.mip);
         let mut steps = Vec::new();
         let mut next = path.as_ref();
         while let Some(p) = next {
@@ -424,15 +436,31 @@ impl<'a, R: Relaxation> Search<'a, R> {
             next = p.parent.as_ref();
         }
         let mut columns = Vec::new();
-        for c in steps.iter().rev().flat_map(|p| &p.changes) {
-            if !self.narrow(c) {
+        for p in steps.iter().rev() {
+            if !self.decide(&p.changes) {
                 return false;
             }
-            columns.push(c.column);
+            columns.extend(p.changes.iter().map(|c| c.column));
         }
         let fine = self.propagate(&columns);
         self.send_bounds();
         fine
+    }
+
+    /// Bounds of the present node, to come back to.
+    pub(super) fn here(&self) -> Here {
+        (
+            self.lower.clone(),
+            self.upper.clone(),
+            self.propagator.length(),
+        )
+    }
+
+    /// The bounds are those of the node again.
+    pub(super) fn back_to(&mut self, (lower, upper, length): Here) {
+        (self.lower, self.upper) = (lower, upper);
+        self.propagator.back_to(length);
+        self.send_bounds();
     }
 
     /// All bounds of the present node go to the relaxation.
@@ -447,42 +475,50 @@ impl<'a, R: Relaxation> Search<'a, R> {
         }
     }
 
-    fn narrow(&mut self, c: &Change) -> bool {
-        let (l, u) = (
-            c.lower.max(self.lower[c.column]),
-            c.upper.min(self.upper[c.column]),
-        );
-        (self.lower[c.column], self.upper[c.column]) = (l, u);
-        l <= u
+    /// Narrows bounds. False: nothing is left.
+    fn decide(&mut self, changes: &[Change]) -> bool {
+        self.propagator.next_level();
+        changes.iter().all(|c| {
+            let (l, u) = (&mut self.lower[c.column], &mut self.upper[c.column]);
+            if c.lower > *l {
+                *l = c.lower;
+                self.propagator.decide(c.column, 0, c.lower);
+            }
+            if c.upper < *u {
+                *u = c.upper;
+                self.propagator.decide(c.column, 1, c.upper);
+            }
+            l <= u
+        })
     }
 
     /// What follows from bounds of the present node that moved, and from the best solution's value. False: nothing is left.
     fn propagate(&mut self, columns: &[usize]) -> bool {
-        self.propagator.cutoff = match self.relaxation.is_linear() {
-            true => self.cutoff(),
-            false => f64::INFINITY,
-        };
-        self.propagator
-            .run(self.mip, Some(columns), &mut self.lower, &mut self.upper)
+        if self.relaxation.is_linear() {
+            self.propagator.limit(self.mip, self.cutoff());
+        }
+        let fine = self
+            .propagator
+            .run(self.mip, Some(columns), &mut self.lower, &mut self.upper);
+        if !fine {
+            let [lower, upper] = &self.root;
+            self.propagator.learn_from_run(self.mip, [lower, upper]);
+        }
+        fine
     }
 
     /// Applies changes and what follows from them. False: nothing is left.
     pub(super) fn apply(&mut self, changes: &[Change]) -> bool {
-        for c in changes {
-            if !self.narrow(c) {
-                return false;
-            }
+        if !self.decide(changes) {
+            return false;
         }
         let columns: Vec<usize> = changes.iter().map(|c| c.column).collect();
         let fine = self.propagate(&columns);
         for &column in columns.iter().chain(&self.propagator.moved) {
             let (lower, upper) = (self.lower[column], self.upper[column]);
             if lower <= upper {
-                self.relaxation.set_bounds(Change {
-                    column,
-                    lower,
-                    upper,
-                });
+                self.relaxation
+                    .set_bounds(Change::new(column, lower, upper));
             }
         }
         fine
@@ -550,6 +586,22 @@ impl<'a, R: Relaxation> Search<'a, R> {
         Some(end)
     }
 
+    /// Solves the relaxation under the present bounds; where these leave nothing below the cutoff, that is learned.
+    pub(super) fn relax(&mut self, cutoff: f64, control: &mut Control) -> Solved {
+        let solved = self.relaxation.solve(cutoff, control);
+        let empty = match solved {
+            Solved::Value(v) => v >= cutoff,
+            Solved::Infeasible | Solved::Cutoff => true,
+            _ => false,
+        };
+        if empty && let Some((terms, side)) = self.relaxation.sum(cutoff) {
+            let [lower, upper] = &self.root;
+            self.propagator
+                .learn(self.mip, &terms, side, [lower, upper]);
+        }
+        solved
+    }
+
     /// Solves the relaxation of a node, again where that tightens its bounds.
     fn evaluate(&mut self, node: &mut Node<R::Start>, control: &mut Control) -> Evaluated {
         let mut resolves = 0;
@@ -559,7 +611,7 @@ impl<'a, R: Relaxation> Search<'a, R> {
                 true => f64::INFINITY,
                 false => self.cutoff(),
             };
-            let solved = self.relaxation.solve(cutoff, control);
+            let solved = self.relax(cutoff, control);
             let value = match solved {
                 Solved::Value(v) => v,
                 Solved::Cutoff => return Evaluated::Leaf("bound"),
@@ -712,7 +764,7 @@ impl<'a, R: Relaxation> Search<'a, R> {
         };
         let sides = sides.map(|side| self.with_orbit(&side, &node.path));
         let start = self.relaxation.start();
-        let before = (self.lower.clone(), self.upper.clone());
+        let before = self.here();
         let child = |s: &mut Self, side: usize| {
             let changes = sides[side].clone();
             Node {
@@ -734,8 +786,7 @@ impl<'a, R: Relaxation> Search<'a, R> {
             return Some(next);
         }
         self.fate(next.number, "infeasible");
-        (self.lower, self.upper) = before;
-        self.send_bounds();
+        self.back_to(before);
         if self.apply(&sides[1 - first]) {
             return Some(other);
         }
@@ -863,7 +914,6 @@ impl<'a, R: Relaxation> Search<'a, R> {
 
     /// The best point whose discrete columns are as in this one.
     fn complete(&mut self, y: &[f64], control: &mut Control) -> Option<(f64, Vec<f64>)> {
-        let bounds = (self.lower.clone(), self.upper.clone());
         let start = self.relaxation.start();
         for (column, &y) in y.iter().enumerate() {
             let t = self.mip.threshold[column];
@@ -892,7 +942,6 @@ impl<'a, R: Relaxation> Search<'a, R> {
             Solved::Value(v) => Some((v, self.relaxation.x().to_vec())),
             _ => None,
         };
-        (self.lower, self.upper) = bounds;
         self.send_bounds();
         self.relaxation.restart(&start);
         let (value, mut x) = found?;
