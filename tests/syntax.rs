@@ -606,8 +606,9 @@ fn compile_time_data() {
 
 #[test]
 fn slips_are_named() {
-    let out = read("variable x >= 0;");
-    assert_eq!(out.warnings, ["1:10 E0234"]);
+    let out =
+        read("variable x >= 0;  set k int: 1..4 = K;  set d 'those with i-j=k, k=-6..6' / 1*3 /;");
+    assert_eq!(out.warnings, ["1:10 E0234", "1:23 E0234"]);
     for (text, found) in [
         ("a = 5\nb = 6;\nc = 7", "1:5 E0201"),
         ("equations e1\n e2\ne1.. x =e= 1;", "2:3 E0201"),

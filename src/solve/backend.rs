@@ -176,8 +176,8 @@ pub type Replied = Result<Reply, SolveError>;
 pub struct QuadraticEngine {
     /// Its name.
     pub name: &'static str,
-    /// Takes linear rows, and the Hessian's upper triangle by columns.
-    pub solve: fn(&Problem, &Sparse, &Budget) -> Run,
+    /// Takes linear rows, the Hessian's upper triangle by columns, and a tolerance.
+    pub solve: fn(&Problem, &Sparse, f64, &Budget) -> Run,
 }
 
 /// A solver.

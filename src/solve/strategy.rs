@@ -97,7 +97,7 @@ strategies! {
             "Nocedal & Wright 2006, chapters 10 and 11";
         ConvexQuadratic "convex_quadratic",
             "linear rows and a positive semidefinite Hessian of the objective: Clarabel solves it",
-            "a Cholesky factorisation and one conic solve",
+            "a Cholesky factorisation and two conic solves",
             "Goulart & Chen 2024";
         WarmStart "warm_start",
             "an earlier solve left marginals: the active set that they name is the first working set",

@@ -198,6 +198,7 @@ impl<'h> Parser<'h> {
         if let ast::StmtKind::Set(list) = &stmt.kind {
             let texts = list
                 .iter()
+                .filter(|s| s.symbol.data.is_none())
                 .filter_map(|s| Some((&s.symbol.name, s.symbol.text.as_deref()?)));
             for (name, text) in
                 texts.filter(|(_, t)| t.contains(":=") || t.contains("..") && t.contains('='))

@@ -321,7 +321,7 @@ fn linear(
 }
 
 /// A convex quadratic program; of its Hessian the upper triangle by columns.
-fn quadratic(problem: &Problem, hessian: &Sparse, budget: &Budget) -> interior::Run {
+fn quadratic(problem: &Problem, hessian: &Sparse, _: f64, budget: &Budget) -> interior::Run {
     let engine = Engine::new(problem, &[], Some(hessian));
     let run = engine.map(|engine| engine.run(budget, false, &|v| v));
     let ended = match run.as_ref().map_or(Status::Failed, |run| run.status) {

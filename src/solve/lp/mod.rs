@@ -29,7 +29,9 @@ use std::rc::Rc;
 /// Clarabel's interior-point method for convex quadratic programs; the active set found there is solved for afterwards.
 pub(super) const QUADRATIC: QuadraticEngine = QuadraticEngine {
     name: "clarabel",
-    solve: |linear, hessian, budget| interior::solve(linear, Some(hessian), 1e-9, budget),
+    solve: |linear, hessian, tolerance, budget| {
+        interior::solve(linear, Some(hessian), tolerance, budget)
+    },
 };
 
 /// How a method ended, in the units of the problem it was given.

@@ -197,8 +197,8 @@ impl Part {
         let mut out: Vec<Self> = Vec::new();
         for (columns, rows) in parts {
             out.push(Self {
-                // what leaves is fixed at 0
-                problem: problem.part(&columns, &rows, &problem.lower),
+                // what leaves is fixed at 0, and what is in other parts costs nothing here
+                problem: problem.part(&columns, &rows, &vec![0.0; n]),
                 pairs: Vec::new(),
                 columns,
             });

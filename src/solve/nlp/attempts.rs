@@ -6,7 +6,7 @@ use super::interior_point::Ended;
 use super::interior_point::lock;
 use super::newton;
 use super::problem::Problem;
-use super::quadratic::Quadratic;
+use super::quadratic::{Quadratic, TOLERANCES};
 use super::schedule::{FINEST, NEARER, ROUNDING};
 use super::trial::{Trial, polished};
 use super::truncated;
@@ -102,11 +102,17 @@ impl Driver<'_, '_> {
     }
 
     pub(super) fn attempt_quadratic(&mut self, quadratic: &Quadratic) {
-        let solution = quadratic.solve(self.budget);
-        self.spend(solution.iterations);
-        self.note_end(solution.ended);
-        let trial = self.judge(solution.x, solution.lambda, solution.ended);
-        self.keep(trial);
+        for tolerance in TOLERANCES {
+            let solution = quadratic.solve(tolerance, self.budget);
+            let ended = solution.ended;
+            self.spend(solution.iterations);
+            self.note_end(ended);
+            let trial = self.judge(solution.x, solution.lambda, ended);
+            self.keep(trial);
+            if ended != Ended::Solved || self.is_settled() {
+                break;
+            }
+        }
     }
 
     /// Solves with rounded kinks, each time from the last point.

@@ -398,8 +398,10 @@ impl Driver<'_, '_> {
             self.search()?;
             return Ok(self.finish());
         }
+        // whoever was named goes first, not alone
+        let postponed = std::mem::take(&mut self.named) || interior_first;
         let lacks_point = !self.best.as_ref().is_some_and(Trial::is_feasible);
-        if interior_first && lacks_point && self.settle_by_sequence(again, Effort::FULL)? {
+        if postponed && lacks_point && self.settle_by_sequence(again, Effort::FULL)? {
             return Ok(self.finish());
         }
         if self.is_impossible() {
@@ -413,19 +415,12 @@ impl Driver<'_, '_> {
         let proved = self.infeasibility.is_some() && lacks_point;
         let goes_on = !self.is_settled() && !proved && self.work() <= self.enough;
         if goes_on && self.settings.runs(Strategy::RestartFromBest) {
-            if !self.named {
-                self.sequential(self.start_point(From::Best), None, Effort::FULL);
-                self.leave_saddles()?;
-            }
+            self.sequential(self.start_point(From::Best), None, Effort::FULL);
+            self.leave_saddles()?;
             if !self.is_settled() {
                 self.attempt(From::Best, NEAR)?;
                 self.leave_saddles()?;
             }
-        }
-        let lacks_point = !self.best.as_ref().is_some_and(Trial::is_feasible);
-        if self.named && lacks_point && !self.is_settled() && self.infeasibility.is_none() {
-            // linear programs at the least violation may prove that there is no feasible point nearby
-            self.sequential(self.start_point(From::Best), None, Effort::FULL);
         }
         self.leave_saddles()?;
         Ok(self.finish())

@@ -25,6 +25,9 @@ use faer::sparse::{SparseColMat, Triplet};
 /// What the shift of the diagonal is to the largest entry of H.
 const SHIFT: f64 = 1e-12;
 
+/// Tolerances of the engine, relative to the whole program: where small terms miss the certificate's with one, the next follows.
+pub(super) const TOLERANCES: [f64; 2] = [1e-9, 1e-12];
+
 /// A convex quadratic program.
 #[derive(Debug)]
 pub struct Quadratic {
@@ -87,9 +90,9 @@ impl Quadratic {
     }
 
     /// Runs the engine. Multipliers λ as in L = f + λᵀg.
-    pub fn solve(&self, budget: &Budget) -> Solution {
+    pub fn solve(&self, tolerance: f64, budget: &Budget) -> Solution {
         let (linear, hessian) = (&self.linear, &self.hessian);
-        let run = (self.engine.solve)(linear, hessian, budget);
+        let run = (self.engine.solve)(linear, hessian, tolerance, budget);
         Solution {
             ended: match run.ended {
                 lp::Ended::Solved => Ended::Solved,
@@ -135,7 +138,7 @@ pub(super) fn nearest(problem: &mut Problem, x: &[f64], budget: &Budget) -> Opti
         (steps.row_lower[i], steps.row_upper[i]) = (f64::NEG_INFINITY, f64::INFINITY);
     }
     let identity: Vec<Entry> = (0..n).map(|j| (j, j, 1.0)).collect();
-    let run = (lp::QUADRATIC.solve)(&steps, &by_rows(n, &identity), budget);
+    let run = (lp::QUADRATIC.solve)(&steps, &by_rows(n, &identity), TOLERANCES[0], budget);
     let inside = |(x, (d, (l, u))): (&f64, (f64, (&f64, &f64)))| (x + d).max(*l).min(*u);
     let bounds = lower.iter().zip(upper);
     (run.ended == lp::Ended::Solved).then(|| {
