@@ -43,7 +43,7 @@ fn compare(page: &str, now: &str) {
 const STRATEGIES_HEAD: &str = "# Strategies
 
 The fallbacks, restarts and special treatments of the solvers. Each can be left out: `--option without=NAME[,NAME…]`, or
-`option without = NAME;` in a model (several names between quotes). `cargo bench --bench ablation` solves the corpora without each in turn
+`option without = NAME;` in a model (several names between quotes). `cargo bench --bench ablation` solves the corpora without each
 and prints what is lost ([measured](lab/strategies.md)); what loses nothing is deleted. This page is made from the table in `src/solve/strategy.rs`.
 
 ";

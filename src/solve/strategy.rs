@@ -60,7 +60,7 @@ strategies! {
             "the nonzeros, some thirty times at most",
             "Andersen & Andersen 1995";
         SimplexFirst "simplex_first",
-            "more than 200 rows and columns: the simplex method is tried before the interior point",
+            "more than 200 rows and columns: the simplex method before the interior point",
             "what an interior point is likely to cost, at most",
             "Koberstein & Suhl 2007";
         FaceVertex "face_vertex",
@@ -204,20 +204,20 @@ strategies! {
     }
     "mip": {
         BinaryProducts "binary_products",
-            "`miqcp` or `minlp` that is not convex quadratic, products with a binary factor, or of integers with at most 256 values: columns and rows take their place, if what is left then is linear or convex quadratic",
-            "20 000 columns, and 5 nodes of the nonlinear program for a first solution (500, then 20 000 of the linear one, with integers in bits)",
+            "not convex quadratic, products with a binary factor, or of integers with at most 256 values: columns and rows instead, if what is left is linear or convex quadratic",
+            "20 000 columns, and 5 nodes of the nonlinear program (500, then 20 000 of the linear one, with integers in bits)",
             "Fortet 1960, Watters 1967, McCormick 1976, Adams & Sherali 1986";
         OuterApproximation "outer_approximation",
-            "convex terms (quadratic, or by rules of composition): tangents at the nodes of a tree over linear programs, with those of the perspective where a binary switches columns off",
-            "a column and a tangent for each term, or block of columns that the Hessians join",
+            "convex terms: tangents at the nodes of a tree over linear programs, those of the perspective where a binary switches columns off",
+            "a column and a tangent for each term or block",
             "Quesada & Grossmann 1992, Frangioni & Gentile 2006, Grant, Boyd & Ye 2006";
         OrbitalBranching "orbital_branching",
-            "columns that are alike: where a binary one is branched down, so are those that permutations make of it",
+            "where a binary column is branched down, so are those that permutations make of it",
             "10⁷ entries of rows, and each of them 20 times",
             "Ostrowski, Linderoth, Rossi & Smriglio 2011";
         ClauseLearning "clause_learning",
-            "a node without a better point: the bounds of binary columns that led there never meet again",
-            "entries of ten times the program's for each, 1000 clauses",
+            "bounds of binary columns that led to a contradiction never meet again",
+            "ten times the program's entries for each; 1000 clauses",
             "Marques-Silva & Sakallah 1999, Achterberg 2007";
     }
 }

@@ -75,8 +75,6 @@ pub(super) struct Learned {
     watched: Vec<Vec<u32>>,
     /// Literals that a clause may have.
     longest: usize,
-    /// Contradictions, those that a clause was made of, and what clauses then said.
-    pub(super) counts: [u64; 3],
 }
 
 impl Learned {
@@ -88,7 +86,6 @@ impl Learned {
             clauses: Vec::new(),
             watched: vec![Vec::new(); p.n()],
             longest: SHORT + (PER_BINARY * binaries as f64) as usize,
-            counts: [0; 3],
         }
     }
 
@@ -117,20 +114,15 @@ impl Learned {
             .iter()
             .take(2)
             .filter(|l| !l.holds(lower, upper));
-        match (open.next(), open.next()) {
-            (Some(_), Some(_)) => Said::Nothing,
-            (Some(last), None) if last.not().holds(lower, upper) => Said::Nothing,
-            (Some(last), None) => {
-                clause.used += 1;
-                self.counts[2] += 1;
+        let said = match (open.next(), open.next()) {
+            (Some(last), None) if !last.not().holds(lower, upper) => {
                 Said::Implied(last.column as usize, f64::from(u8::from(!last.is_one)))
             }
-            _ => {
-                clause.used += 1;
-                self.counts[2] += 1;
-                Said::Contradiction
-            }
-        }
+            (None, _) => Said::Contradiction,
+            _ => return Said::Nothing,
+        };
+        clause.used += 1;
+        said
     }
 
     /// Clauses of one literal, which holds nowhere.
@@ -280,11 +272,6 @@ impl Propagator {
         }
     }
 
-    /// Contradictions so far, those that a clause was made of, and what clauses said.
-    pub fn counts(&self) -> [u64; 3] {
-        self.learned.counts
-    }
-
     /// Where the trail is, to go back there.
     pub fn length(&self) -> usize {
         self.trail.as_ref().map_or(0, |t| t.steps.len())
@@ -309,9 +296,7 @@ impl Propagator {
 
     /// Learns from a row that contradicts the bounds, the sum of the terms not above `side`.
     pub fn learn(&mut self, mip: &Mip, terms: &[(usize, f64)], side: f64, root: [&[f64]; 2]) {
-        self.learned.counts[0] += 1;
         if let Some(literals) = self.contradiction(mip, terms, side, root) {
-            self.learned.counts[1] += 1;
             let k = self.learned.push(literals);
             self.enqueue_row(mip.problem.m() + 1 + k);
         }

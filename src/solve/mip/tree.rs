@@ -330,9 +330,6 @@ impl<'a, R: Relaxation> Search<'a, R> {
         let (done, open): (Vec<_>, Vec<_>) = nodes.partition(|n| all || n.bound >= cutoff);
         self.open = open.into();
         done.iter().for_each(|n| self.fate(n.number, "bound"));
-        let [all, learned, said] = self.propagator.counts();
-        let line = format!("contradictions: {all}, {learned} learned from, {said} uses");
-        control.budget.log(&line);
         self.log(control, true);
         end
     }
