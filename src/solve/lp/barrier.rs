@@ -1,5 +1,4 @@
-//! A primal-dual interior-point method for linear programs: Mehrotra's predictor and corrector (Mehrotra 1992), and
-//! Gondzio's further correctors (Gondzio 1996) where a factorisation costs many solves.
+//! A primal-dual interior-point method for linear programs: Mehrotra's predictor and corrector (Mehrotra 1992).
 //!
 //! ```text
 //!     min cᵀx   subject to   A x − s = 0,   l ≤ (x, s) ≤ u
@@ -35,8 +34,6 @@ use faer::sparse::linalg::cholesky::{
 };
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Side};
-use std::collections::HashMap;
-use std::hash::{DefaultHasher, Hash, Hasher};
 
 /// ρ and δ where primal and dual variables are alike.
 const REGULAR: f64 = 1e-9;
@@ -62,12 +59,8 @@ const GOOD: f64 = 1e-9;
 /// A gap of so much of the tolerance is none: the residuals that are left stay.
 const NOTHING: f64 = 1e-4;
 
-/// Correctors beyond Mehrotra's: one more for each of these ratios that the operations of a factorisation to those of a solve exceed.
-const CORRECTORS: [f64; 3] = [10.0, 30.0, 50.0];
-
-/// Entries of a column that is long, and the columns of a block.
+/// Entries of a column that is long.
 const LONG: usize = 100;
-const BLOCK: usize = 64;
 
 /// Operations for each entry from which on a second order of pivots is looked for. (Below, the search takes longer than what it saves: a fifth of the time on
 /// MAROS-R7 and PILOT87 of Netlib, which have 1400.)
@@ -203,38 +196,6 @@ impl Iterate {
     }
 }
 
-/// For each variable those before it in its block, where variables have entries with the same others: zeros between them make one block of the factor,
-/// which is eliminated by products of matrices, not one by one.
-fn alike(start: &[usize], index: &[usize]) -> Vec<Vec<usize>> {
-    let order = start.len() - 1;
-    let hash = |k: usize| {
-        let mut hasher = DefaultHasher::new();
-        k.hash(&mut hasher);
-        hasher.finish()
-    };
-    let hashes: Vec<u64> = (0..order).map(hash).collect();
-    let mut pattern = vec![(0usize, 0u64); order];
-    for k in 0..order {
-        for &i in &index[start[k]..start[k + 1] - 1] {
-            for (k, i) in [(k, i), (i, k)] {
-                let (count, sum) = pattern[k];
-                pattern[k] = (count + 1, sum.wrapping_add(hashes[i]));
-            }
-        }
-    }
-    let mut before = vec![Vec::new(); order];
-    let mut blocks: HashMap<(usize, u64), Vec<usize>> = HashMap::new();
-    for (k, &pattern) in pattern.iter().enumerate().filter(|e| e.1.0 >= LONG) {
-        let block = blocks.entry(pattern).or_default();
-        before[k].clone_from(block);
-        block.push(k);
-        if block.len() == BLOCK {
-            block.clear();
-        }
-    }
-    before
-}
-
 /// The order of pivots by approximate minimum degree (Amestoy, Davis & Duff 1996), and what it costs.
 fn minimum_degree(
     pattern: SymbolicSparseColMatRef<usize>,
@@ -320,27 +281,6 @@ fn pivots(pattern: SymbolicSparseColMatRef<usize>, dense: f64) -> Option<(Vec<us
     Some(second.unwrap_or(first))
 }
 
-/// A matrix with zeros in these places too.
-fn with_zeros(
-    start: &[usize],
-    index: &[usize],
-    entries: &[f64],
-    zeros: &[Vec<usize>],
-) -> (Vec<usize>, Vec<usize>, Vec<f64>) {
-    let (mut starts, mut indices, mut values) = (vec![0], Vec::new(), Vec::new());
-    for (k, zeros) in zeros.iter().enumerate() {
-        let line = start[k]..start[k + 1];
-        let given = index[line.clone()].iter().zip(&entries[line]);
-        let mut line: Vec<(usize, f64)> = given.map(|(&i, &v)| (i, v)).collect();
-        line.extend(zeros.iter().map(|&i| (i, 0.0)));
-        line.sort_unstable_by_key(|e| e.0);
-        indices.extend(line.iter().map(|e| e.0));
-        values.extend(line.iter().map(|e| e.1));
-        starts.push(indices.len());
-    }
-    (starts, indices, values)
-}
-
 /// Columns that can be eliminated one by one, before the factor is begun: those with bounds and few entries.
 fn short(p: &Program) -> Vec<bool> {
     let mut short: Vec<bool> = (0..p.n).map(|j| p.columns.line(j).len() < LONG).collect();
@@ -417,10 +357,6 @@ impl Layout {
         if index.len() > most {
             return None;
         }
-        let before = alike(&start, &index);
-        if before.iter().any(|b| !b.is_empty()) {
-            (start, index, entries) = with_zeros(&start, &index, &entries, &before);
-        }
         let pattern = SymbolicSparseColMatRef::new_checked(order, order, &start, None, &index);
         let mut length = vec![0usize; order];
         for k in 0..order {
@@ -469,8 +405,6 @@ struct System {
     /// Added to D of the columns, and to the diagonal of the rows.
     rho: f64,
     delta: f64,
-    /// Operations of a factorisation for each of a solve.
-    ratio: f64,
     /// A refined solution was worse than none: the factor has broken down.
     unsound: bool,
 }
@@ -500,10 +434,6 @@ impl System {
         let memory = MemBuffer::try_new(numeric.or(solve)).map_err(|_| Ended::Failed)?;
         let mut signs = vec![-1; layout.long];
         signs.resize(order, 1);
-        let eliminated = match layout.short {
-            Some(_) => p.rows.value.len(),
-            None => 0,
-        };
         Ok(Self {
             signs,
             factor: vec![0.0; symbolic.len_val()],
@@ -513,7 +443,6 @@ impl System {
             regular: REGULAR,
             rho: REGULAR,
             delta: REGULAR,
-            ratio: layout.operations / (2.0 * (nonzeros + eliminated as f64)),
             layout,
             unsound: false,
             inverse: Vec::new(),
@@ -931,7 +860,7 @@ pub(super) fn solve(
     run
 }
 
-/// Predictor, corrector, and further correctors; the step and how much of it to go, primal and dual.
+/// Predictor and corrector; the step and how much of it to go, primal and dual.
 fn whole_step(
     p: &Program,
     system: &mut System,
@@ -951,30 +880,8 @@ fn whole_step(
     let target = if count == 0 { 0.0 } else { sigma * mu };
     let rc = (0..count).map(|b| target + full[b] - affine.w[b] * affine.z[b]);
     let rc: Vec<f64> = rc.collect();
-    let mut step = system.step(p, at, rp, rd, &rc);
-    let mut ways = [reach(&at.w, &step.w), reach(&at.z, &step.z)];
-    let most = CORRECTORS.iter().filter(|r| system.ratio > **r).count();
-    let none = [vec![0.0; p.m], vec![0.0; p.n + p.m]];
-    for _ in 0..most {
-        if ways[0].min(ways[1]) > 0.95 {
-            break;
-        }
-        let wish = ways.map(|w| (w + 0.2).min(1.0));
-        let correction = (0..count).map(|b| {
-            let v = (at.w[b] + wish[0] * step.w[b]) * (at.z[b] + wish[1] * step.z[b]);
-            let change = v.clamp(0.1 * target, 10.0 * target) - v;
-            change.max(-10.0 * target)
-        });
-        let correction: Vec<f64> = correction.collect();
-        let mut other = system.step(p, at, &none[0], &none[1], &correction);
-        other.advance(&step, [1.0; 2]);
-        let now = [reach(&at.w, &other.w), reach(&at.z, &other.z)];
-        let gain = now[0] + now[1] - ways[0] - ways[1];
-        if gain < 0.02 {
-            break;
-        }
-        (step, ways) = (other, now);
-    }
+    let step = system.step(p, at, rp, rd, &rc);
+    let ways = [reach(&at.w, &step.w), reach(&at.z, &step.z)];
     let finite = step.y.iter().chain(&step.value).all(|v| v.is_finite());
     (finite && !system.unsound).then_some(())?;
     Some((step, ways.map(|w| if w < 1.0 { SHORT * w } else { 1.0 })))

@@ -345,7 +345,7 @@ pub fn watch<'a>(budget: &'a Budget, most: u64) -> impl FnMut(u64) -> Option<End
 
 fn simplex_only(p: &Problem, accuracy: Accuracy, budget: &Budget) -> Gave {
     let mut simplex = Simplex::new(p);
-    simplex.boxes = p.m() + p.n() > MAX_SMALL_SIZE;
+    simplex.flips = p.m() + p.n() > MAX_SMALL_SIZE;
     simplex.pivots = logged(p, budget);
     let ended = simplex.solve(&mut watch(budget, u64::MAX));
     concluded(simplex, ended, accuracy, budget)
@@ -579,7 +579,7 @@ fn auto(p: &Problem, accuracy: Accuracy, strategies: Strategies, budget: &Budget
         _ => return finished(p, None, accuracy, strategies, budget),
     };
     let mut simplex = Simplex::new(p);
-    (simplex.most_work, simplex.boxes) = (work, size > MAX_SMALL_SIZE);
+    (simplex.most_work, simplex.flips) = (work, size > MAX_SMALL_SIZE);
     simplex.pivots = logged(p, budget);
     let layout = Rc::new(RefCell::new(None));
     let known = layout.clone();

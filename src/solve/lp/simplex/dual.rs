@@ -15,21 +15,10 @@ use std::collections::BinaryHeap;
 /// Pivots one after the other that no update of the factor takes: the numbers have broken down.
 const REFUSED_UPDATES: u32 = 100;
 
-/// The box of a free variable where those with one bound have 1: it should be basic.
-const FREE: f64 = 1000.0;
-
 impl Simplex {
-    /// Makes the basis dual feasible, by a program in boxes, by flipping bounds and, what is left, by shifting costs; then
-    /// pivots until it is primal feasible.
+    /// Makes the basis dual feasible, by flipping bounds and, what is left, by shifting costs; then pivots until it is primal
+    /// feasible.
     pub(super) fn dual(&mut self, stop: &mut dyn FnMut(u64) -> Option<Ended>) -> Stop {
-        if self.perturb
-            && self.boxes
-            && self.is_endless_infeasible()
-            && let Stop::Ended(why @ (Ended::Interrupted | Ended::Time | Ended::Iterations)) =
-                self.boxed(stop)
-        {
-            return Stop::Ended(why);
-        }
         self.make_dual_feasible();
         self.pivots(stop)
     }
@@ -40,50 +29,6 @@ impl Simplex {
             let endless = self.work_lower[j].is_infinite() || self.work_upper[j].is_infinite();
             endless && self.slot[j] == NONBASIC && self.dual_violation(j) > self.dual_tolerance
         })
-    }
-
-    /// Leads to a dual feasible basis, if there is one: the dual method on the program whose bounds say only where
-    /// variables may go, [0, 1] for those without an upper bound and so on (Koberstein & Suhl 2007). Its basis at the optimum is
-    /// dual feasible if the value is 0.
-    fn boxed(&mut self, stop: &mut dyn FnMut(u64) -> Option<Ended>) -> Stop {
-        let total = self.n + self.m;
-        for j in 0..total {
-            let endless = [self.lower[j].is_infinite(), self.upper[j].is_infinite()];
-            let [l, u] = match endless {
-                [true, true] => [-FREE, FREE],
-                [false, true] => [0.0, 1.0],
-                [true, false] => [-1.0, 0.0],
-                [false, false] => [0.0, 0.0],
-            };
-            (self.work_lower[j], self.work_upper[j]) = (l, u);
-            if self.slot[j] == NONBASIC {
-                self.x[j] = if self.d[j] < 0.0 { u } else { l };
-            }
-        }
-        let mut end = Stop::Ended(Ended::Failed);
-        if self.compute_values().is_some() {
-            self.make_dual_feasible();
-            let cutoff = std::mem::replace(&mut self.cutoff, f64::INFINITY);
-            end = self.pivots(stop);
-            self.cutoff = cutoff;
-        }
-        self.work_lower.copy_from_slice(&self.lower);
-        self.work_upper.copy_from_slice(&self.upper);
-        self.work_cost.copy_from_slice(&self.cost);
-        for j in 0..total {
-            if self.slot[j] == NONBASIC {
-                let low = self.d[j] >= 0.0 || self.upper[j].is_infinite();
-                self.x[j] = match (low && self.lower[j].is_finite(), self.upper[j].is_finite()) {
-                    (true, _) => self.lower[j],
-                    (false, true) => self.upper[j],
-                    (false, false) => 0.0,
-                };
-            }
-        }
-        if self.refactor().is_none() {
-            return Stop::Ended(Ended::Failed);
-        }
-        end
     }
 
     /// Pivots of the dual method, from a dual feasible basis.
@@ -124,8 +69,7 @@ impl Simplex {
                 (0..self.n + self.m).for_each(|j| self.side[j] = self.side_of(j));
             }
             self.touched.clear();
-            let own_bounds = || self.work_lower == self.lower;
-            if self.most_work.is_finite() && self.iterations.is_multiple_of(16) && own_bounds() {
+            if self.most_work.is_finite() && self.iterations.is_multiple_of(16) {
                 let sum: f64 = violations.iter().map(|v| v.sqrt()).sum();
                 largest = largest.max(sum);
                 self.left = if largest > 0.0 { sum / largest } else { 1.0 };

@@ -135,9 +135,8 @@ pub struct Simplex {
     pub cutoff: f64,
     /// The methods give up (as at an iteration limit) when [`Self::iterations`] is this.
     pub limit: u64,
-    /// The dual method has a first phase in boxes; without it shifted costs, which the primal method mends, as soon in
-    /// small programs and near a solution.
-    pub boxes: bool,
+    /// The dual method goes first where flips alone make the reduced costs right, which is sooner there in large programs.
+    pub flips: bool,
     /// Gives up, as at an iteration limit, when [`Simplex::work`] is more than this, or is likely to be.
     pub most_work: f64,
     /// Asked once, when that is reached: what the most is.
@@ -614,7 +613,7 @@ impl Simplex {
             }
             let primal = self.violation() <= self.tolerance;
             // From the basis of all logicals flips alone may make the reduced costs right.
-            let by_flips = || round == 0 && self.boxes && !self.is_endless_infeasible();
+            let by_flips = || round == 0 && self.flips && !self.is_endless_infeasible();
             let end = if primal && self.dual_infeasibility() <= self.dual_tolerance {
                 return Ended::Solved;
             } else if primal && !by_flips() {
