@@ -9,7 +9,7 @@ apart(i,j)$(ord(i) < ord(j))..  sqr(x(i) - x(j)) + sqr(y(i) - y(j)) =g= sqr(r(i)
 x.lo(i) = -100;  x.up(i) = 100;  y.lo(i) = -100;  y.up(i) = 100;  radius.lo = 0.05;  radius.up = 100;
 x.l(i) = 10*ord(i) - 20;  y.l(i) = 30*mod(ord(i),2) - 10;
 model m / all /;
-option nlp = ipopt;
+option nlp = pounce;
 solve m using nlp minimizing radius;
 *= m.modelstat 2
 *= radius.l 14
