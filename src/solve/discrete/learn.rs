@@ -78,10 +78,10 @@ pub(super) struct Learned {
 }
 
 impl Learned {
-    pub(super) fn new(mip: &Mip) -> Self {
+    fn new(mip: &Mip) -> Self {
         let p = &mip.problem;
-        let binary = |j: &usize| mip.integer[*j] && p.lower[*j] == 0.0 && p.upper[*j] == 1.0;
-        let binaries = (0..p.n()).filter(binary).count();
+        let is_binary = |j: &usize| mip.is_binary(*j, &p.lower, &p.upper);
+        let binaries = (0..p.n()).filter(is_binary).count();
         Self {
             clauses: Vec::new(),
             watched: vec![Vec::new(); p.n()],
@@ -126,12 +126,8 @@ impl Learned {
     }
 
     /// Clauses of one literal, which holds nowhere.
-    fn alone(&self) -> Vec<usize> {
-        let clauses = self.clauses.iter().enumerate();
-        clauses
-            .filter(|c| c.1.literals.len() == 1)
-            .map(|c| c.0)
-            .collect()
+    fn alone(&self) -> impl Iterator<Item = usize> {
+        (0..self.clauses.len()).filter(|&k| self.clauses[k].literals.len() == 1)
     }
 
     /// Its number.
@@ -187,20 +183,23 @@ struct Step {
     level: u32,
 }
 
-/// All bounds of a node that differ from those of the root, in the order in which they moved.
+/// All bounds of a node that differ from those of the root, in the order in which they moved, and what was learned from such.
 pub(super) struct Trail {
     steps: Vec<Step>,
     /// By side and column: the last step.
     last: [Vec<u32>; 2],
     level: u32,
+    pub(super) learned: Learned,
 }
 
 impl Trail {
-    fn new(columns: usize) -> Self {
+    fn new(mip: &Mip) -> Self {
+        let columns = mip.problem.n();
         Self {
             steps: Vec::new(),
             last: [vec![NONE; columns], vec![NONE; columns]],
             level: 0,
+            learned: Learned::new(mip),
         }
     }
 
@@ -243,19 +242,26 @@ impl Trail {
 impl Propagator {
     /// From here on it is kept how bounds came about, and learned from contradictions.
     pub fn trace(&mut self, mip: &Mip) {
-        self.trail = Some(Trail::new(mip.problem.n()));
+        self.trail = Some(Trail::new(mip));
+    }
+
+    /// Whether contradictions teach.
+    pub fn learns(&self) -> bool {
+        self.trail.is_some()
     }
 
     /// The bounds are those of the root.
     pub fn at_root(&mut self, mip: &Mip) {
-        self.back_to(0);
-        if self.learned.forget() {
-            self.clear_queue();
+        if let Some(trail) = &mut self.trail {
+            trail.back_to(0);
+            if trail.learned.forget() {
+                self.queue.clear();
+            }
+            for k in trail.learned.alone() {
+                self.queue.push(mip.problem.m() + 1 + k);
+            }
         }
         self.enqueue_objective(mip);
-        for k in self.learned.alone() {
-            self.enqueue_row(mip.problem.m() + 1 + k);
-        }
     }
 
     /// What follows, until the next, is one decision and what it implies.
@@ -286,19 +292,22 @@ impl Propagator {
 
     /// Learns from the row at which the last run ended; `root` are bounds that hold everywhere.
     pub fn learn_from_run(&mut self, mip: &Mip, root: [&[f64]; 2]) {
-        if self.trail.is_some()
+        if self.learns()
             && let Some((row, upper)) = self.contradicted.take()
         {
-            let (terms, side) = self.row_of(mip, row, upper);
-            self.learn(mip, &terms, side, root);
+            if let Some((terms, side)) = self.row_of(mip, row, upper) {
+                self.learn(mip, &terms, side, root);
+            }
         }
     }
 
     /// Learns from a row that contradicts the bounds, the sum of the terms not above `side`.
     pub fn learn(&mut self, mip: &Mip, terms: &[(usize, f64)], side: f64, root: [&[f64]; 2]) {
-        if let Some(literals) = self.contradiction(mip, terms, side, root) {
-            let k = self.learned.push(literals);
-            self.enqueue_row(mip.problem.m() + 1 + k);
+        if let Some(literals) = self.contradiction(mip, terms, side, root)
+            && let Some(trail) = &mut self.trail
+        {
+            let k = trail.learned.push(literals);
+            self.queue.push(mip.problem.m() + 1 + k);
         }
     }
 
@@ -323,18 +332,18 @@ impl Propagator {
         while let Some(at) = open.pop_last() {
             let step = &trail.steps[at];
             let j = step.column as usize;
-            let binary = mip.integer[j] && root[0][j] == 0.0 && root[1][j] == 1.0;
+            let binary = mip.is_binary(j, root[0], root[1]);
             let others = || open.last().is_some_and(|&k| trail.steps[k].level == level);
             let stays = binary && !(step.level == level && others());
             let Some((row, upper)) = step.row.filter(|_| !stays) else {
-                if !binary || literals.len() == self.learned.longest {
+                if !binary || literals.len() == trail.learned.longest {
                     return None;
                 }
                 let (column, is_one) = (step.column, step.side == 0);
                 literals.push(Literal { column, is_one });
                 continue;
             };
-            let (mut terms, side) = self.row_of(mip, row as usize, upper);
+            let (mut terms, side) = self.row_of(mip, row as usize, upper)?;
             effort = effort.checked_sub(terms.len())?;
             // what the others must reach so that no more is left for this bound
             let room = match (mip.integer[j], step.side) {
@@ -352,13 +361,13 @@ impl Propagator {
         Some(literals)
     }
 
-    /// A row as `Σ terms ≤ side`, by its upper or its lower side.
-    fn row_of(&self, mip: &Mip, i: usize, upper: bool) -> Sum {
+    /// A row as `Σ terms ≤ side`, by its upper or its lower side. None: a clause, and there are none.
+    fn row_of(&self, mip: &Mip, i: usize, upper: bool) -> Option<Sum> {
         let p = &mip.problem;
-        match i.checked_sub(p.m()) {
+        Some(match i.checked_sub(p.m()) {
             Some(0) => (mip.costs().collect(), self.cutoff),
             Some(k) => {
-                let literals = &self.learned.clauses[k - 1].literals;
+                let literals = &self.trail.as_ref()?.learned.clauses[k - 1].literals;
                 let sign = |l: &Literal| if l.is_one { 1.0 } else { -1.0 };
                 let ones = literals.iter().filter(|l| l.is_one).count();
                 let terms = literals.iter().map(|l| (l.column as usize, sign(l)));
@@ -369,7 +378,7 @@ impl Propagator {
                 p.rows.line(i).map(|(j, a)| (j, -a)).collect(),
                 -p.row_lower[i],
             ),
-        }
+        })
     }
 }
 

@@ -119,6 +119,11 @@ impl Mip {
         mip
     }
 
+    /// Whether a column is 0 or 1 between these bounds.
+    pub fn is_binary(&self, column: usize, lower: &[f64], upper: &[f64]) -> bool {
+        self.integer[column] && lower[column] == 0.0 && upper[column] == 1.0
+    }
+
     /// Bounds of integer columns become integers.
     pub fn round_bounds(&mut self) {
         let p = &mut self.problem;

@@ -1,7 +1,7 @@
 //! What bounds imply for other bounds: rows, thresholds and ordered sets, followed until nothing moves.
 
 pub use super::learn::Sum;
-use super::learn::{Learned, Said, Trail};
+use super::learn::{Said, Trail};
 use super::model::{FEASIBLE, INTEGRAL, Mip};
 use crate::solve::lp::form::{Activity, term};
 use std::collections::{BTreeMap, VecDeque};
@@ -58,15 +58,40 @@ impl Points {
     }
 }
 
+/// Rows that are to be looked at, each once.
+#[derive(Default)]
+pub(super) struct Queue {
+    rows: VecDeque<u32>,
+    is_queued: Vec<bool>,
+}
+
+impl Queue {
+    pub(super) fn push(&mut self, row: usize) {
+        if row >= self.is_queued.len() {
+            self.is_queued.resize(row + 1, false);
+        }
+        if !std::mem::replace(&mut self.is_queued[row], true) {
+            self.rows.push_back(row as u32);
+        }
+    }
+
+    fn pop(&mut self) -> Option<usize> {
+        let row = self.rows.pop_front()? as usize;
+        self.is_queued[row] = false;
+        Some(row)
+    }
+
+    pub(super) fn clear(&mut self) {
+        while self.pop().is_some() {}
+    }
+}
+
 /// Works on one program.
 pub struct Propagator {
-    queue: VecDeque<u32>,
-    queued: Vec<bool>,
+    pub(super) queue: Queue,
     /// The objective, as a row behind the others.
     objective: Vec<(usize, f64)>,
-    /// Rows behind that.
-    pub(super) learned: Learned,
-    /// How bounds came about, where that is asked for.
+    /// How bounds came about, and clauses, rows behind that, where these are learned.
     pub(super) trail: Option<Trail>,
     /// The row that the last run ended at, and whether its upper side.
     pub(super) contradicted: Option<(usize, bool)>,
@@ -85,10 +110,8 @@ impl Propagator {
     /// For a program.
     pub fn new(mip: &Mip) -> Self {
         Self {
-            queue: VecDeque::new(),
-            queued: vec![false; mip.problem.m() + 1],
+            queue: Queue::default(),
             objective: mip.costs().collect(),
-            learned: Learned::new(mip),
             trail: None,
             contradicted: None,
             cutoff: f64::INFINITY,
@@ -101,36 +124,19 @@ impl Propagator {
 
     fn enqueue(&mut self, mip: &Mip, column: usize) {
         for (i, _) in mip.problem.columns.line(column) {
-            self.enqueue_row(i);
+            self.queue.push(i);
         }
         if mip.problem.cost[column] != 0.0 {
             self.enqueue_objective(mip);
         }
-        for k in 0..self.learned.watching(column).len() {
-            let k = self.learned.watching(column)[k] as usize;
-            self.enqueue_row(mip.problem.m() + 1 + k);
+        for &k in self.trail.iter().flat_map(|t| t.learned.watching(column)) {
+            self.queue.push(mip.problem.m() + 1 + k as usize);
         }
-    }
-
-    pub(super) fn enqueue_row(&mut self, i: usize) {
-        if i >= self.queued.len() {
-            self.queued.resize(i + 1, false);
-        }
-        if !self.queued[i] {
-            self.queued[i] = true;
-            self.queue.push_back(i as u32);
-        }
-    }
-
-    pub(super) fn clear_queue(&mut self) {
-        self.queue
-            .drain(..)
-            .for_each(|i| self.queued[i as usize] = false);
     }
 
     pub(super) fn enqueue_objective(&mut self, mip: &Mip) {
         if self.cutoff.is_finite() {
-            self.enqueue_row(mip.problem.m());
+            self.queue.push(mip.problem.m());
         }
     }
 
@@ -154,14 +160,12 @@ impl Propagator {
         self.contradicted = None;
         match columns {
             Some(columns) => columns.iter().for_each(|&j| self.enqueue(mip, j)),
-            None => (0..mip.problem.m()).for_each(|i| self.enqueue_row(i)),
+            None => (0..mip.problem.m()).for_each(|i| self.queue.push(i)),
         }
         let mut fine = true;
         let most = self.work + 50 * mip.problem.rows.value.len() + 1000;
         loop {
-            while let Some(i) = self.queue.pop_front() {
-                let i = i as usize;
-                self.queued[i] = false;
+            while let Some(i) = self.queue.pop() {
                 let p = &mip.problem;
                 match i.checked_sub(p.m()) {
                     None => {
@@ -179,13 +183,14 @@ impl Propagator {
                     }
                     Some(k) => {
                         self.work += 2;
-                        fine &= match self.learned.say(k - 1, lower, upper) {
-                            Said::Nothing => true,
-                            Said::Implied(j, v) => {
+                        let say = |t: &mut Trail| t.learned.say(k - 1, lower, upper);
+                        fine &= match self.trail.as_mut().map(say) {
+                            None | Some(Said::Nothing) => true,
+                            Some(Said::Implied(j, v)) => {
                                 let own = 1.0 - 2.0 * v;
                                 self.set(mip, j, [v, v], Some((i, own)), lower, upper)
                             }
-                            Said::Contradiction => {
+                            Some(Said::Contradiction) => {
                                 self.contradicted = Some((i, true));
                                 false
                             }
@@ -193,16 +198,16 @@ impl Propagator {
                     }
                 }
                 if !fine || self.work > most {
-                    self.clear_queue();
+                    self.queue.clear();
                 }
             }
             let before = self.moved.len();
             if !fine || !self.thresholds_and_sets(mip, lower, upper) {
-                self.clear_queue();
+                self.queue.clear();
                 return false;
             }
             if self.moved.len() == before || self.work > most {
-                self.clear_queue();
+                self.queue.clear();
                 return true;
             }
         }
@@ -212,11 +217,10 @@ impl Propagator {
     /// otherwise whether bounds moved.
     pub fn probe(&mut self, mip: &Mip, lower: &mut [f64], upper: &mut [f64]) -> Option<bool> {
         let most = self.work + PROBING * (mip.problem.rows.value.len() + 1000);
-        let is_open = |j: usize, l: &[f64], u: &[f64]| mip.integer[j] && l[j] == 0.0 && u[j] == 1.0;
         let (mut l, mut u) = (lower.to_vec(), upper.to_vec());
         let mut changed = false;
         for j in 0..lower.len() {
-            if !is_open(j, lower, upper) || self.work > most {
+            if !mip.is_binary(j, lower, upper) || self.work > most {
                 continue;
             }
             let mut sides = [None, None];
@@ -273,14 +277,13 @@ impl Propagator {
         alike: &mut dyn FnMut(usize, usize, bool),
     ) -> Option<bool> {
         let p = &mip.problem;
-        let is_open = |j: usize, l: &[f64], u: &[f64]| mip.integer[j] && l[j] == 0.0 && u[j] == 1.0;
         let worth = ENUMERATION * (p.rows.value.len() + 1000);
         let mut most = self.work + worth;
         let mut changed = false;
         for i in (0..p.m()).filter(|&i| p.row_lower[i] == p.row_upper[i]) {
             let columns = p.rows.line(i).map(|e| e.0);
             let open: Vec<usize> = columns.filter(|&j| lower[j] < upper[j]).collect();
-            let are_binary = open.iter().all(|&j| is_open(j, lower, upper));
+            let are_binary = open.iter().all(|&j| mip.is_binary(j, lower, upper));
             if open.len() < 3 || !are_binary || self.work > most {
                 continue;
             }
@@ -297,7 +300,7 @@ impl Propagator {
                 if points.lower[k] > lower[k] || points.upper[k] < upper[k] {
                     (lower[k], upper[k]) = (points.lower[k], points.upper[k]);
                     columns.push(k);
-                } else if is_open(k, lower, upper) && !points.is_open[k] {
+                } else if mip.is_binary(k, lower, upper) && !points.is_open[k] {
                     let (ones, opposite) = (points.ones[k], points.all() & !points.ones[k]);
                     match same.get(&ones.min(opposite)) {
                         Some(&(by, of)) => {

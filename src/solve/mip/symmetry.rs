@@ -42,7 +42,7 @@ impl Symmetry {
             return None;
         }
         let p = &mip.problem;
-        let is_binary = |j: usize| mip.integer[j] && p.lower[j] == 0.0 && p.upper[j] == 1.0;
+        let is_binary = |j| mip.is_binary(j, &p.lower, &p.upper);
         let binary: Vec<bool> = (0..p.n()).map(is_binary).collect();
         let mut finder = Finder {
             mip,

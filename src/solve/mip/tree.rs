@@ -591,7 +591,10 @@ impl<'a, R: Relaxation> Search<'a, R> {
             Solved::Infeasible | Solved::Cutoff => true,
             _ => false,
         };
-        if empty && let Some((terms, side)) = self.relaxation.sum(cutoff) {
+        if empty
+            && self.propagator.learns()
+            && let Some((terms, side)) = self.relaxation.sum(cutoff)
+        {
             let [lower, upper] = &self.root;
             self.propagator
                 .learn(self.mip, &terms, side, [lower, upper]);

@@ -372,8 +372,8 @@ impl Driver<'_, '_> {
         } else {
             Effort::FULL
         };
-        let sequence = !interior_first || again;
-        if sequence && (self.settle_by_sequence(again, effort)? || self.impossible) {
+        let sequence_first = !self.named && (!interior_first || again);
+        if sequence_first && (self.settle_by_sequence(again, effort)? || self.impossible) {
             return Ok(self.finish());
         }
         if self.infeasibility.is_some() {
@@ -399,7 +399,7 @@ impl Driver<'_, '_> {
             return Ok(self.finish());
         }
         // whoever was named goes first, not alone
-        let postponed = std::mem::take(&mut self.named) || interior_first;
+        let postponed = self.named || interior_first;
         let lacks_point = !self.best.as_ref().is_some_and(Trial::is_feasible);
         if postponed && lacks_point && self.settle_by_sequence(again, Effort::FULL)? {
             return Ok(self.finish());
@@ -422,7 +422,6 @@ impl Driver<'_, '_> {
                 self.leave_saddles()?;
             }
         }
-        self.leave_saddles()?;
         Ok(self.finish())
     }
 

@@ -31,9 +31,6 @@ impl Driver<'_, '_> {
         again: bool,
         effort: Effort,
     ) -> Result<bool, SolveError> {
-        if self.named {
-            return Ok(false);
-        }
         let marginals = again.then(|| lock(&self.problem).marginals_of(self.instance));
         // Newton's method may have come to a feasible point that is no optimum
         let found = self.best.as_ref().filter(|t| t.is_feasible());
