@@ -13,7 +13,8 @@
 //! ```
 //!
 //! in the columns and the rows alone, whose factors exist for every order of the pivots (Vanderbei 1995): free and dense columns
-//! need no care. ρ and δ shorten the steps, but move no solution: what is solved for is a step, not the point.
+//! need no care. The corrector has the weights, primal and dual, with which the step goes farthest (Colombo & Gondzio 2008). ρ and δ
+//! shorten the steps, but move no solution: what is solved for is a step, not the point.
 
 use super::Ended;
 use super::form::{Point, Problem, Sparse};
@@ -76,8 +77,14 @@ const LARGER: usize = 2;
 /// The least distance to a bound of a point that is inside.
 const LEAST: f64 = 1e-10;
 
-/// The part of the way to the next bound that a step goes.
-const SHORT: f64 = 0.995;
+/// The part of the way to the next bound that a step goes, least and most.
+const SHORT: [f64; 2] = [0.9, 1.0 - 1e-9];
+
+/// What the product at that bound is to be, of the mean of all.
+const LATE: f64 = 0.01;
+
+/// Weights of the corrector that are tried.
+const WEIGHTS: u32 = 9;
 
 /// The program without its fixed columns: variables are the columns that are left, then the rows.
 struct Program {
@@ -183,17 +190,33 @@ struct Iterate {
 
 impl Iterate {
     /// Goes so much of a step, primal and dual.
-    fn advance(&mut self, step: &Self, [primal, dual]: [f64; 2]) {
+    fn advance(&mut self, step: &Self, ways: [f64; 2]) {
+        self.combine(step, ways, |v, s, way| v + way * s);
+    }
+
+    /// The mean of this step and another one, with so much weight, primal and dual.
+    fn weigh(&mut self, other: &Self, weights: [f64; 2]) {
+        self.combine(other, weights, mean);
+    }
+
+    fn combine(&mut self, other: &Self, [primal, dual]: [f64; 2], by: fn(f64, f64, f64) -> f64) {
         let parts = [
-            (&mut self.value, &step.value, primal),
-            (&mut self.w, &step.w, primal),
-            (&mut self.y, &step.y, dual),
-            (&mut self.z, &step.z, dual),
+            (&mut self.value, &other.value, primal),
+            (&mut self.w, &other.w, primal),
+            (&mut self.y, &other.y, dual),
+            (&mut self.z, &other.z, dual),
         ];
-        for (v, step, by) in parts {
-            v.iter_mut().zip(step).for_each(|(v, s)| *v += by * s);
+        for (v, other, factor) in parts {
+            v.iter_mut()
+                .zip(other)
+                .for_each(|(v, o)| *v = by(*v, *o, factor));
         }
     }
+}
+
+/// Of a value, with this weight, and another.
+fn mean(value: f64, other: f64, weight: f64) -> f64 {
+    other + weight * (value - other)
 }
 
 /// The order of pivots by approximate minimum degree (Amestoy, Davis & Duff 1996), and what it costs.
@@ -613,9 +636,36 @@ impl System {
 }
 
 /// How much of a step keeps all positive, 1 at most.
-fn reach(at: &[f64], step: &[f64]) -> f64 {
-    let negative = at.iter().zip(step).filter(|e| *e.1 < 0.0);
+fn reach(at: &[f64], step: impl IntoIterator<Item = f64>) -> f64 {
+    let negative = at.iter().zip(step).filter(|e| e.1 < 0.0);
     negative.map(|(a, s)| -a / s).fold(1.0, f64::min)
+}
+
+/// How much of a step keeps all positive, and its weight, not below `least`, against another one with which that is most.
+fn farthest(at: &[f64], step: &[f64], other: &[f64], least: f64) -> (f64, f64) {
+    let weights = (0..=WEIGHTS).map(|k| mean(1.0, least, f64::from(k) / f64::from(WEIGHTS)));
+    let far = |weight: f64| {
+        let pairs = step.iter().zip(other);
+        let step = pairs.map(|(s, o)| mean(*s, *o, weight));
+        (reach(at, step), weight)
+    };
+    let farthest = weights.map(far).max_by(|a, b| a.0.total_cmp(&b.0));
+    farthest.unwrap_or((1.0, 1.0))
+}
+
+/// How much of a step is gone where `way` leads to a bound: until the product there is as wanted (Mehrotra 1992).
+fn before_bound(
+    way: f64,
+    [at, step]: [&[f64]; 2],
+    factor: impl Fn(usize) -> f64,
+    wanted: f64,
+) -> f64 {
+    let blocks = |b: &usize| step[*b] < 0.0 && -at[*b] / step[*b] <= way;
+    let Some(b) = (0..at.len()).find(blocks).filter(|_| way < 1.0) else {
+        return way;
+    };
+    let distance = wanted / factor(b).max(f64::MIN_POSITIVE);
+    ((distance - at[b]) / step[b]).clamp(SHORT[0] * way, SHORT[1] * way)
 }
 
 /// Mehrotra's first point: the least changes that satisfy the equations, moved inside the bounds.
@@ -872,17 +922,29 @@ fn whole_step(
     let count = p.bounds();
     let full: Vec<f64> = (0..count).map(|b| -at.w[b] * at.z[b]).collect();
     let affine = system.step(p, at, rp, rd, &full);
-    let (first, second) = (reach(&at.w, &affine.w), reach(&at.z, &affine.z));
-    let left =
-        (0..count).map(|b| (at.w[b] + first * affine.w[b]) * (at.z[b] + second * affine.z[b]));
-    let after = left.sum::<f64>() / count.max(1) as f64;
-    let sigma = (after / mu).powi(3).clamp(1e-8, 1.0);
+    let first = reach(&at.w, affine.w.iter().copied());
+    let second = reach(&at.z, affine.z.iter().copied());
+    let product = |step: &Iterate, [primal, dual]: [f64; 2]| {
+        let of = |b| (at.w[b] + primal * step.w[b]) * (at.z[b] + dual * step.z[b]);
+        (0..count).map(of).sum::<f64>() / count.max(1) as f64
+    };
+    let left = product(&affine, [first, second]) / mu;
+    let sigma = left.powi(3).clamp(1e-8, 1.0);
     let target = if count == 0 { 0.0 } else { sigma * mu };
     let rc = (0..count).map(|b| target + full[b] - affine.w[b] * affine.z[b]);
     let rc: Vec<f64> = rc.collect();
-    let step = system.step(p, at, rp, rd, &rc);
-    let ways = [reach(&at.w, &step.w), reach(&at.z, &step.z)];
+    let mut step = system.step(p, at, rp, rd, &rc);
+    let (primal, weight) = farthest(&at.w, &step.w, &affine.w, first * second);
+    let (dual, other) = farthest(&at.z, &step.z, &affine.z, first * second);
+    step.weigh(&affine, [weight, other]);
     let finite = step.y.iter().chain(&step.value).all(|v| v.is_finite());
     (finite && !system.unsound).then_some(())?;
-    Some((step, ways.map(|w| if w < 1.0 { SHORT * w } else { 1.0 })))
+    let wanted = LATE * product(&step, [primal, dual]);
+    let z = |b: usize| at.z[b] + dual * step.z[b];
+    let w = |b: usize| at.w[b] + primal * step.w[b];
+    let ways = [
+        before_bound(primal, [&at.w, &step.w], z, wanted),
+        before_bound(dual, [&at.z, &step.z], w, wanted),
+    ];
+    Some((step, ways))
 }

@@ -433,7 +433,7 @@ impl Simplex {
 /// Steps that all make together, of so many with a way to go, before one after the other makes its own. Where all are
 /// near their ends some of these lead there; else each costs a dense solve and hardly leads on.
 fn together(far: usize) -> usize {
-    (far / 8).max(30)
+    (far / 64).max(8)
 }
 
 /// Asks now and then whether to stop.
