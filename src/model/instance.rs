@@ -10,6 +10,7 @@
 //! 0; all coefficients and right-hand sides are finite; solvers see no names.
 
 pub use super::function::Function;
+use super::named::named;
 /// −∞ as used in bounds.
 pub const NEG_INF: f64 = f64::NEG_INFINITY;
 /// +∞ as used in bounds.
@@ -53,13 +54,14 @@ impl Relation {
 /// Bounds from here on are infinite.
 pub const INFINITE: f64 = 1e30;
 
-/// Direction of a solve.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Sense {
-    /// `minimizing`
-    Minimize,
-    /// `maximizing`
-    Maximize,
+named! {
+    /// Direction of a solve.
+    pub enum Sense {
+        /// `minimizing`
+        Minimize "min";
+        /// `maximizing`
+        Maximize "max";
+    }
 }
 
 /// As its name.
@@ -70,14 +72,6 @@ impl serde::Serialize for Sense {
 }
 
 impl Sense {
-    /// `min` or `max`.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Minimize => "min",
-            Self::Maximize => "max",
-        }
-    }
-
     /// What the objective is multiplied by to make the problem a minimum.
     pub fn sign(self) -> f64 {
         match self {
