@@ -215,13 +215,13 @@ pub fn algebra(scope: Scope, f: &Formulation) -> Algebra {
     let own = f.own.iter().map(|&v| AlgebraVariable {
         name: n.name(v),
         domain: scope.symbols.domain_names(scope.get(v)),
-        sign: Sign::of(super::derive::kind(scope.symbols, v)).word(),
+        sign: Sign::of(super::derive::kind(scope.symbols, v)).name(),
         multiplier_of: None,
     });
     let multipliers = f.multipliers.iter().map(|m| AlgebraVariable {
         name: m.name.clone(),
         domain: domain(&m.domain),
-        sign: m.sign.word(),
+        sign: m.sign.name(),
         multiplier_of: Some(match m.origin {
             Origin::Row(s) => ("rows", n.name(s)),
             Origin::Lower(s) => ("lower bounds", n.name(s)),
@@ -271,7 +271,7 @@ impl Naming<'_> {
             over,
             key: self.key(&r.key),
             left: self.expression(&r.left),
-            relation: r.relation.sign(),
+            relation: r.relation.name(),
             right: self.expression(&r.right),
             terms: Vec::new(),
             pair: r.pair.map(|v| self.variable(v)),

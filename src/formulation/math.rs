@@ -235,7 +235,6 @@ impl<'a> Setter<'a> {
         }
     }
 
-    #[allow(clippy::too_many_lines)] // one match
     fn plain(&mut self, e: &Expr) -> (Math, u8) {
         use level::*;
         match e {

@@ -144,7 +144,6 @@ impl<'a> Writer<'a> {
         }
     }
 
-    #[allow(clippy::too_many_lines)] // one match
     fn plain(&mut self, e: &Expr) -> (String, u8) {
         use level::*;
         match e {
@@ -293,7 +292,7 @@ impl<'a> Writer<'a> {
         let condition = condition.map(|c| format!("${}", self.condition(&c)));
         let (left, right) = (self.expr(&r.left), self.expr(&r.right));
         self.names.leave(before);
-        let relation = r.relation.sign();
+        let relation = r.relation.name();
         let condition = condition.unwrap_or_default();
         format!(
             "{}{key}{condition}..\n   {left} {relation} {right};\n",

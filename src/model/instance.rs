@@ -16,30 +16,21 @@ pub const NEG_INF: f64 = f64::NEG_INFINITY;
 /// +∞ as used in bounds.
 pub const INF: f64 = f64::INFINITY;
 
-/// `=e=`, `=g=`, `=l=`, `=n=`.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Relation {
-    /// Equal.
-    Equal,
-    /// Left side at least the right.
-    Greater,
-    /// Left side at most the right.
-    Less,
-    /// No relation.
-    Free,
+named! {
+    /// `=e=`, `=g=`, `=l=`, `=n=`.
+    pub enum Relation {
+        /// Equal.
+        Equal "=e=";
+        /// Left side at least the right.
+        Greater "=g=";
+        /// Left side at most the right.
+        Less "=l=";
+        /// No relation.
+        Free "=n=";
+    }
 }
 
 impl Relation {
-    /// `=e=`, `=g=`, `=l=`, `=n=`
-    pub fn sign(self) -> &'static str {
-        match self {
-            Self::Equal => "=e=",
-            Self::Greater => "=g=",
-            Self::Less => "=l=",
-            Self::Free => "=n=",
-        }
-    }
-
     /// Lower and upper bound of a left side whose right side is this.
     pub fn bounds(self, rhs: f64) -> [f64; 2] {
         match self {

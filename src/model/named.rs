@@ -14,7 +14,7 @@ macro_rules! named {
             $(#[doc = concat!("`", $name, "`")] $(#[$doc])* $variant $(= $code)?,)*
         }
 
-        #[allow(dead_code)] // nobody asks all of them everything
+        #[allow(dead_code, unreachable_pub)] // nobody asks all of them everything
         impl $of {
             /// All of them, in order.
             pub const ALL: &'static [Self] = &[$(Self::$variant),*];
