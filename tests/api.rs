@@ -21,6 +21,22 @@ fn exported(root: &str) -> Vec<(String, String)> {
     out
 }
 
+/// A text in which enums with names (`model/named.rs`) stand as others do.
+fn outdented(text: &str) -> String {
+    let mut out = String::new();
+    let mut inside = false;
+    for line in text.lines() {
+        match line {
+            "named! {" | "functions! {" => inside = true,
+            "}" if inside => inside = false,
+            _ if inside => out.push_str(line.strip_prefix("    ").unwrap_or(line)),
+            _ => out.push_str(line),
+        }
+        out.push('\n');
+    }
+    out
+}
+
 /// Lines of the block that begins in this line, without the first and the last; formatted code closes it at the
 /// same indentation.
 fn block<'a>(lines: &[&'a str], at: usize) -> Vec<&'a str> {
@@ -83,7 +99,7 @@ fn public_api() {
         .map(|f| {
             let name = f.strip_prefix(&src).expect("below src");
             let text = std::fs::read_to_string(f).expect("a source");
-            (name.to_string_lossy().into_owned(), text)
+            (name.to_string_lossy().into_owned(), outdented(&text))
         })
         .collect();
     let below = std::fs::read_to_string(src.join("solver.rs")).expect("instances and backends");

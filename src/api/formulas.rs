@@ -24,6 +24,7 @@ use crate::source::SourceMap;
 /// let choice = bmod::Choice::default().model("transport").check(true);
 /// ```
 #[derive(Clone, Debug, Default)]
+#[must_use]
 pub struct Choice {
     model: Option<String>,
     solve: Option<usize>,
@@ -33,14 +34,12 @@ pub struct Choice {
 
 impl Choice {
     /// The model of this name.
-    #[must_use]
     pub fn model(mut self, name: impl Into<String>) -> Self {
         self.model = Some(name.into());
         self
     }
 
     /// The solve with this number, counted from 1.
-    #[must_use]
     pub fn solve(mut self, number: usize) -> Self {
         self.solve = Some(number);
         self
@@ -48,14 +47,12 @@ impl Choice {
 
     /// Writes one row of each equation with its numbers beside the formula, and the coefficients of a small model. For
     /// [`Model::show`], which then runs the model.
-    #[must_use]
     pub fn numbers(mut self, on: bool) -> Self {
         self.numbers = on;
         self
     }
 
     /// Generates what is derived and compares it with the model it comes from ([`Formulas::check`]).
-    #[must_use]
     pub fn check(mut self, on: bool) -> Self {
         self.check = on;
         self

@@ -21,6 +21,7 @@ pub(super) type Clock = Arc<dyn Fn() -> f64 + Send + Sync>;
 ///     .option("decimals", 6);
 /// ```
 #[derive(Clone, Default)]
+#[must_use]
 pub struct Options {
     time_limit: Option<f64>,
     pub(super) max_memory: Option<usize>,
@@ -48,63 +49,54 @@ impl fmt::Debug for Options {
 
 impl Options {
     /// Seconds for the whole run. A solve that it stops keeps the best point it has seen.
-    #[must_use]
     pub fn time_limit(mut self, seconds: f64) -> Self {
         self.time_limit = Some(seconds);
         self
     }
 
     /// Bytes that the process may hold while the model runs.
-    #[must_use]
     pub fn max_memory(mut self, bytes: usize) -> Self {
         self.max_memory = Some(bytes);
         self
     }
 
     /// An option of the language or of a solver, as `bmod run --option name=value` sets it.
-    #[must_use]
     pub fn option(mut self, name: impl Into<String>, value: impl fmt::Display) -> Self {
         self.pairs.push((name.into(), value.to_string()));
         self
     }
 
     /// Computes a proved interval for each optimal value ([`super::Solve::bounds`]).
-    #[must_use]
     pub fn certify(mut self, on: bool) -> Self {
         self.certify = on;
         self
     }
 
     /// Explains how each solve ended, as `bmod why` does ([`super::Solve::explanation`]).
-    #[must_use]
     pub fn explain(mut self, on: bool) -> Self {
         self.explain = on;
         self
     }
 
     /// Keeps instances and solutions ([`super::Run::solution_json`]).
-    #[must_use]
     pub fn keep_solutions(mut self, on: bool) -> Self {
         self.keep_solutions = on;
         self
     }
 
     /// Watches and stops the run from another thread.
-    #[must_use]
     pub fn control(mut self, control: &Control) -> Self {
         self.control = control.clone();
         self
     }
 
     /// Gets what the model prints (`display`, summaries of solves) while it runs. [`super::Run::printed`] has it too.
-    #[must_use]
     pub fn on_print(mut self, listener: impl Fn(&str) + Send + Sync + 'static) -> Self {
         self.listener = Some(Arc::new(listener));
         self
     }
 
     /// Gets what a long step is doing, while it runs, on the thread that runs. [`Control::progress`] tells another thread.
-    #[must_use]
     pub fn on_progress(mut self, listener: impl Fn(&str) + Send + Sync + 'static) -> Self {
         self.watcher = Some(Arc::new(listener));
         self
@@ -112,7 +104,6 @@ impl Options {
 
     /// Looks whether what the comments of the text claim (`*= total.l 285`) is so, within a relative tolerance:
     /// [`super::Run::claims`].
-    #[must_use]
     pub fn claims(mut self, tolerance: f64) -> Self {
         self.claims = Some(tolerance);
         self
@@ -120,7 +111,6 @@ impl Options {
 
     /// Writes the generated rows and columns, so many of each symbol, into [`super::Run::printed`], as `bmod list` does; what else
     /// the model prints is left out.
-    #[must_use]
     pub fn list(mut self, records: usize) -> Self {
         self.list = Some(records);
         self
@@ -128,7 +118,6 @@ impl Options {
 
     /// Tells the time, in seconds since 1970-01-01 UTC; it must not go back. The default is the system's clock,
     /// with the feature `system`; without it the time stands still and no time limit holds.
-    #[must_use]
     pub fn clock(mut self, clock: impl Fn() -> f64 + Send + Sync + 'static) -> Self {
         self.clock = Some(Arc::new(clock));
         self

@@ -370,25 +370,21 @@ impl Run {
     }
 
     /// Level of a variable or an equation.
-    #[allow(clippy::missing_errors_doc)]
     pub fn level(&self, name: &str, labels: impl Labels) -> Result<f64, Error> {
         self.symbol(name)?.level(labels)
     }
 
     /// Marginal of a variable (reduced cost) or an equation (dual value).
-    #[allow(clippy::missing_errors_doc)]
     pub fn marginal(&self, name: &str, labels: impl Labels) -> Result<f64, Error> {
         self.symbol(name)?.marginal(labels)
     }
 
     /// Lower bound of a variable or an equation.
-    #[allow(clippy::missing_errors_doc)]
     pub fn lower(&self, name: &str, labels: impl Labels) -> Result<f64, Error> {
         self.symbol(name)?.lower(labels)
     }
 
     /// Upper bound of a variable or an equation.
-    #[allow(clippy::missing_errors_doc)]
     pub fn upper(&self, name: &str, labels: impl Labels) -> Result<f64, Error> {
         self.symbol(name)?.upper(labels)
     }

@@ -334,19 +334,16 @@ impl<'a> Symbol<'a> {
     }
 
     /// Marginal: reduced cost of a variable, dual value of an equation.
-    #[allow(clippy::missing_errors_doc)]
     pub fn marginal(&self, labels: impl Labels) -> Result<f64, Error> {
         self.attribute(MARGINAL, "marginal", labels)
     }
 
     /// Lower bound.
-    #[allow(clippy::missing_errors_doc)]
     pub fn lower(&self, labels: impl Labels) -> Result<f64, Error> {
         self.attribute(LOWER, "lower bound", labels)
     }
 
     /// Upper bound.
-    #[allow(clippy::missing_errors_doc)]
     pub fn upper(&self, labels: impl Labels) -> Result<f64, Error> {
         self.attribute(UPPER, "upper bound", labels)
     }

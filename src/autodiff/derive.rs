@@ -70,17 +70,7 @@ pub(super) fn gradient(graph: &Graph) -> Code {
     let mut d = Derivation::new(graph, 1);
     d.forward();
     let adjoint = d.adjoints();
-    let mut outputs = Vec::new();
-    for (id, e) in graph.elements.iter().enumerate() {
-        if let (Element::Var(k), Some(step)) = (e, adjoint[id]) {
-            outputs.push(Output {
-                slots: [*k, NONE],
-                step,
-            });
-        }
-    }
-    outputs.sort_by_key(|o| o.slots);
-    d.finish(outputs)
+    d.finish_slots(&adjoint)
 }
 
 /// Code for the lower triangle of the Hessian.
@@ -139,16 +129,7 @@ pub(super) fn product(graph: &Graph, variables: u32) -> Code {
             }
         }
     }
-    let mut outputs = Vec::new();
-    for (id, e) in graph.elements.iter().enumerate() {
-        if let (Element::Var(k), Some(step)) = (e, change[id]) {
-            outputs.push(Output {
-                slots: [*k, NONE],
-                step,
-            });
-        }
-    }
-    d.finish(outputs)
+    d.finish_slots(&change)
 }
 
 impl<'g> Derivation<'g> {
@@ -161,6 +142,26 @@ impl<'g> Derivation<'g> {
             value: Vec::with_capacity(graph.elements.len()),
             local: Vec::with_capacity(graph.elements.len()),
         }
+    }
+
+    /// One output per slot whose variable has such a step.
+    fn finish_slots(self, of: &[Option<Step>]) -> Code {
+        let output = |(e, step): (&Element, &Option<Step>)| match (e, step) {
+            (Element::Var(k), &Some(step)) => Some(Output {
+                slots: [*k, NONE],
+                step,
+            }),
+            _ => None,
+        };
+        let mut outputs: Vec<Output> = self
+            .graph
+            .elements
+            .iter()
+            .zip(of)
+            .filter_map(output)
+            .collect();
+        outputs.sort_by_key(|o| o.slots);
+        self.finish(outputs)
     }
 
     fn finish(self, outputs: Vec<Output>) -> Code {

@@ -76,6 +76,9 @@ struct Places {
     twice: Vec<(u32, u32)>,
 }
 
+/// Entries of a matrix, row by row.
+pub(crate) type Lines = Vec<Vec<(usize, f64)>>;
+
 /// Values and exact derivatives of an instance. It keeps what it needs of the instance.
 #[derive(Debug, Default)]
 pub struct Evaluator {
@@ -213,15 +216,21 @@ impl Evaluator {
     /// The entries of the Jacobian at a point, row by row.
     ///
     /// Errors: as [`Self::jacobian`].
-    pub(crate) fn jacobian_rows(
-        &mut self,
-        x: &[f64],
-    ) -> Result<Vec<Vec<(usize, f64)>>, EvalFailure> {
+    pub(crate) fn jacobian_rows(&mut self, x: &[f64]) -> Result<Lines, EvalFailure> {
         let mut values = vec![0.0; self.jacobian_column.len()];
         self.jacobian(x, &mut values)?;
         let entry = |k: usize| (self.jacobian_column[k] as usize, values[k]);
         let rows = self.jacobian_start.windows(2);
         Ok(rows.map(|r| (r[0]..r[1]).map(entry).collect()).collect())
+    }
+
+    /// The activities of the rows at a point, and the entries of the Jacobian, row by row.
+    ///
+    /// Errors: as [`Self::jacobian`].
+    pub(crate) fn linearised(&mut self, x: &[f64]) -> Result<(Vec<f64>, Lines), EvalFailure> {
+        let mut activity = vec![0.0; self.jacobian_start.len() - 1];
+        self.rows(x, &mut activity)?;
+        Ok((activity, self.jacobian_rows(x)?))
     }
 
     /// Values of the Jacobian in the order of its pattern.

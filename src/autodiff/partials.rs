@@ -525,14 +525,29 @@ fn softmax_curvature(w: &[f64], s: f64, from: usize, h: &mut [f64]) {
     }
 }
 
+/// A density like x^(p−1) where x is 0; `one`: its value where p is 1.
+fn at_edge(p: f64, one: f64) -> f64 {
+    match p {
+        _ if p > 1.0 => 0.0,
+        1.0 => one,
+        _ => f64::INFINITY,
+    }
+}
+
+/// Its slope there, where p is 2 and where p is 1 these.
+fn slope_at_edge(p: f64, two: f64, one: f64) -> f64 {
+    match p {
+        _ if p > 2.0 => 0.0,
+        2.0 => two,
+        1.0 => one,
+        _ => f64::INFINITY,
+    }
+}
+
 fn gamma_reg_partials(x: f64, a: f64, active: &[bool], g: &mut [f64], h: &mut [f64]) {
     // by x: x^(a−1) e^−x / Γ(a)
     let density = if x == 0.0 {
-        match a {
-            _ if a > 1.0 => 0.0,
-            1.0 => 1.0,
-            _ => f64::INFINITY,
-        }
+        at_edge(a, 1.0)
     } else {
         ((a - 1.0) * x.ln() - x - special::log_gamma(a)).exp()
     };
@@ -540,12 +555,7 @@ fn gamma_reg_partials(x: f64, a: f64, active: &[bool], g: &mut [f64], h: &mut [f
     let second = !h.is_empty();
     if second {
         h[0] = if x == 0.0 {
-            match a {
-                _ if a > 2.0 => 0.0,
-                2.0 => 1.0,
-                1.0 => -1.0,
-                _ => f64::INFINITY,
-            }
+            slope_at_edge(a, 1.0, -1.0)
         } else {
             density * ((a - 1.0) / x - 1.0)
         };
@@ -568,16 +578,11 @@ fn beta_reg_partials(x: f64, a: f64, b: f64, active: &[bool], g: &mut [f64], h: 
     let y = 1.0 - x;
     let second = !h.is_empty();
     // by x: x^(a−1) (1−x)^(b−1) / B(a, b)
-    let edge = |p: f64, rest: f64| match p {
-        _ if p > 1.0 => 0.0,
-        1.0 => rest,
-        _ => f64::INFINITY,
-    };
     let log_density = (a - 1.0) * x.ln() + (b - 1.0) * (-x).ln_1p() - special::log_beta(a, b);
     let density = if x == 0.0 {
-        edge(a, b)
+        at_edge(a, b)
     } else if y == 0.0 {
-        edge(b, a)
+        at_edge(b, a)
     } else {
         log_density.exp()
     };
@@ -585,12 +590,7 @@ fn beta_reg_partials(x: f64, a: f64, b: f64, active: &[bool], g: &mut [f64], h: 
     if second {
         h[0] = if x == 0.0 || y == 0.0 {
             let (p, q, s) = if x == 0.0 { (a, b, 1.0) } else { (b, a, -1.0) };
-            match p {
-                _ if p > 2.0 => 0.0,
-                2.0 => s * q * (q + 1.0),
-                1.0 => -s * q * (q - 1.0),
-                _ => f64::INFINITY,
-            }
+            slope_at_edge(p, s * q * (q + 1.0), -s * q * (q - 1.0))
         } else {
             density * ((a - 1.0) / x - (b - 1.0) / y)
         };

@@ -557,7 +557,7 @@ impl Compiler {
             }
             _ => {}
         }
-        let Some(which) = functions::label_attribute(&lower) else {
+        let Some(which) = LabelAttribute::named(&lower) else {
             let known = "val, pos, ord, off, rev, uel, len, tlen, first, last";
             return self.unknown_attribute(attr, &symbol.name, "set", known);
         };

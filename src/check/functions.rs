@@ -1,8 +1,9 @@
 //! Names of functions, attributes and options.
 
-use super::node::{DataFunction, Derived, LabelAttribute};
+use super::node::{DataFunction, Derived};
 use super::symbols::attribute;
 use crate::model::instance::Function;
+use crate::model::problem_type::ProblemType;
 
 /// What a function name stands for.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -19,71 +20,15 @@ pub enum Callee {
     Data(DataFunction),
 }
 
-/// How many of [`FUNCTIONS`] are about sets: the first.
-const OF_SETS: usize = 4;
+/// Functions of sets: name, meaning, least and greatest number of arguments.
+const OF_SETS: [(&str, Callee, usize, usize); 4] = [
+    ("ord", Callee::Ord, 1, 2),
+    ("card", Callee::Card, 1, 1),
+    ("sameas", Callee::SameAs, 2, 2),
+    ("diag", Callee::SameAs, 2, 2),
+];
 
-/// Name, meaning, least and greatest number of arguments of those that take no variables.
-const FUNCTIONS: &[(&str, Callee, usize, usize)] = {
-    use Callee::{Card, Data, Ord, SameAs};
-    use DataFunction as D;
-    &[
-        ("ord", Ord, 1, 2),
-        ("card", Card, 1, 1),
-        ("sameas", SameAs, 2, 2),
-        ("diag", SameAs, 2, 2),
-        ("uniform", Data(D::Uniform), 2, 2),
-        ("uniformint", Data(D::UniformInt), 2, 2),
-        ("normal", Data(D::Normal), 2, 2),
-        ("randbinomial", Data(D::RandBinomial), 2, 2),
-        ("randlinear", Data(D::RandLinear), 3, 3),
-        ("randtriangle", Data(D::RandTriangle), 3, 3),
-        ("fact", Data(D::Fact), 1, 1),
-        ("mapval", Data(D::Mapval), 1, 1),
-        ("pi", Data(D::Pi), 0, 0),
-        ("execseed", Data(D::ExecSeed), 0, 0),
-        ("jnow", Data(D::JNow), 0, 0),
-        ("jstart", Data(D::JStart), 0, 0),
-        ("jdate", Data(D::JDate), 3, 3),
-        ("jtime", Data(D::JTime), 3, 3),
-        ("gyear", Data(D::GYear), 1, 1),
-        ("gmonth", Data(D::GMonth), 1, 1),
-        ("gday", Data(D::GDay), 1, 1),
-        ("ghour", Data(D::GHour), 1, 1),
-        ("gminute", Data(D::GMinute), 1, 1),
-        ("gsecond", Data(D::GSecond), 1, 1),
-        ("gmillisec", Data(D::GMillisec), 1, 1),
-        ("gdow", Data(D::GDow), 1, 1),
-        ("gleap", Data(D::GLeap), 1, 1),
-        ("timeelapsed", Data(D::TimeElapsed), 0, 0),
-        ("timeexec", Data(D::TimeElapsed), 0, 0),
-        ("timecomp", Data(D::Zero), 0, 0),
-        ("timestart", Data(D::Zero), 0, 0),
-        ("timeclose", Data(D::Zero), 0, 0),
-        ("heapsize", Data(D::Zero), 0, 0),
-        ("heapfree", Data(D::Zero), 0, 0),
-        ("heaplimit", Data(D::Zero), 0, 0),
-        ("execerror", Data(D::ExecError), 0, 0),
-        ("maxexecerror", Data(D::MaxExecError), 0, 0),
-        ("errorlevel", Data(D::ErrorLevel), 0, 0),
-        ("numcores", Data(D::One), 0, 0),
-        ("mathlastrc", Data(D::Zero), 0, 0),
-        ("mathlastec", Data(D::Zero), 0, 0),
-        ("mathoval", Data(D::Zero), 0, 0),
-        ("platformcode", Data(D::One), 0, 0),
-        ("licenselevel", Data(D::One), 0, 0),
-        ("licensestatus", Data(D::Zero), 0, 0),
-        ("gamsrelease", Data(D::GamsRelease), 0, 0),
-        ("gamsversion", Data(D::GamsVersion), 0, 0),
-        ("handlecollect", Data(D::HandleCollect), 1, 1),
-        ("handledelete", Data(D::HandleDelete), 1, 1),
-        ("handlestatus", Data(D::HandleStatus), 1, 1),
-        ("readycollect", Data(D::ReadyCollect), 1, 2),
-        ("handlesubmit", Data(D::HandleSubmit), 1, 1),
-        ("sleep", Data(D::Sleep), 1, 1),
-    ]
-};
-
-/// The function of this name (lower case), with least and greatest number of arguments.
+/// The function of this name, with least and greatest number of arguments.
 pub fn callee(name: &str) -> Option<(Callee, usize, usize)> {
     if let Some(f) = Function::named(name) {
         let (least, most) = f.arity();
@@ -94,16 +39,19 @@ pub fn callee(name: &str) -> Option<(Callee, usize, usize)> {
         };
         return Some((Callee::Math(f), least, most));
     }
-    let row = FUNCTIONS.iter().find(|f| f.0 == name);
+    if let Some(f) = DataFunction::named(name) {
+        let (least, most) = f.arity();
+        return Some((Callee::Data(f), least, most));
+    }
+    let row = OF_SETS.iter().find(|f| f.0.eq_ignore_ascii_case(name));
     row.map(|f| (f.1, f.2, f.3))
 }
 
 /// All function names.
 pub fn names() -> impl Iterator<Item = &'static str> {
-    let (of_sets, of_data) = FUNCTIONS.split_at(OF_SETS);
-    let math = Function::all().map(Function::name);
-    let of_sets = of_sets.iter().map(|f| f.0);
-    of_sets.chain(math).chain(of_data.iter().map(|f| f.0))
+    let math = Function::ALL.iter().map(|f| f.name());
+    let of_data = DataFunction::ALL.iter().flat_map(|f| f.names()).copied();
+    OF_SETS.iter().map(|f| f.0).chain(math).chain(of_data)
 }
 
 /// Whether the first argument is a constant of the formula (`cvpower(a,x)`, scale of `lsemaxsc`).
@@ -125,10 +73,10 @@ pub enum RecordAttribute {
     Fix,
 }
 
-/// Attributes of variables and equations: name, and as `display` shows it.
-const RECORD_ATTRIBUTES: &[(&str, &str, RecordAttribute)] = {
-    use RecordAttribute::{Derived as D, Fix, Stored};
-    &[
+/// Attributes of variables and equations that are not computed: name, as `display` shows it, meaning.
+const RECORD_ATTRIBUTES: [(&str, &str, RecordAttribute); 8] = {
+    use RecordAttribute::{Fix, Stored};
+    [
         ("l", "L", Stored(attribute::L)),
         ("m", "M", Stored(attribute::M)),
         ("lo", "Lo", Stored(attribute::LO)),
@@ -137,15 +85,6 @@ const RECORD_ATTRIBUTES: &[(&str, &str, RecordAttribute)] = {
         ("prior", "Prior", Stored(attribute::PRIOR)),
         ("stage", "Stage", Stored(attribute::STAGE)),
         ("fx", "Fx", Fix),
-        ("slack", "Slack", D(Derived::Slack)),
-        ("slacklo", "SlackLo", D(Derived::SlackLo)),
-        ("slackup", "SlackUp", D(Derived::SlackUp)),
-        ("infeas", "Infeas", D(Derived::Infeas)),
-        ("range", "Range", D(Derived::Range)),
-        ("rangelo", "RangeLo", D(Derived::RangeLo)),
-        ("rangeup", "RangeUp", D(Derived::RangeUp)),
-        ("pricelo", "PriceLo", D(Derived::PriceLo)),
-        ("priceup", "PriceUp", D(Derived::PriceUp)),
     ]
 };
 
@@ -176,21 +115,24 @@ pub fn meant_attribute(name: &str, kind: &str) -> Option<&'static str> {
     ELSEWHERE.iter().find(named).map(|row| row.2)
 }
 
-/// Name, name in displays, and meaning of the attribute with this name.
-fn attribute_row(name: &str) -> Option<&'static (&'static str, &'static str, RecordAttribute)> {
-    let mut rows = RECORD_ATTRIBUTES.iter();
-    rows.find(|a| a.0.eq_ignore_ascii_case(name))
+/// The attribute with this name, and as `display` shows it.
+fn attribute_row(name: &str) -> Option<(&'static str, RecordAttribute)> {
+    let row = RECORD_ATTRIBUTES
+        .iter()
+        .find(|a| a.0.eq_ignore_ascii_case(name));
+    let derived = || Derived::named(name).map(|d| (d.name(), RecordAttribute::Derived(d)));
+    row.map(|a| (a.1, a.2)).or_else(derived)
 }
 
 /// The attribute with this name.
 pub fn record_attribute(name: &str) -> Option<RecordAttribute> {
-    attribute_row(name).map(|a| a.2)
+    attribute_row(name).map(|a| a.1)
 }
 
 /// The attribute with this name as `display` shows it.
 pub fn display_attribute(name: &str) -> Option<&'static str> {
-    let shown = attribute_row(name).filter(|a| a.2 != RecordAttribute::Fix);
-    shown.map(|a| a.1)
+    let shown = attribute_row(name).filter(|a| a.1 != RecordAttribute::Fix);
+    shown.map(|a| a.0)
 }
 
 /// Offset of the table of a stored attribute, by its name.
@@ -207,39 +149,6 @@ pub fn attribute_word(offset: u32) -> &'static str {
     RECORD_ATTRIBUTES.iter().find(is).map_or("", |a| a.0)
 }
 
-/// Attributes of set elements.
-const LABEL_ATTRIBUTES: &[(&str, LabelAttribute)] = &[
-    ("val", LabelAttribute::Val),
-    ("pos", LabelAttribute::Pos),
-    ("ord", LabelAttribute::Ord),
-    ("off", LabelAttribute::Off),
-    ("rev", LabelAttribute::Rev),
-    ("uel", LabelAttribute::Uel),
-    ("len", LabelAttribute::Len),
-    ("tlen", LabelAttribute::TextLen),
-    ("tval", LabelAttribute::TextVal),
-    ("first", LabelAttribute::First),
-    ("last", LabelAttribute::Last),
-];
-
-/// The attribute of a set element with this lower-case name.
-pub fn label_attribute(name: &str) -> Option<LabelAttribute> {
-    let row = LABEL_ATTRIBUTES.iter().find(|a| a.0 == name);
-    row.map(|a| a.1)
-}
-
-/// The name of an attribute of set elements.
-pub fn label_word(attribute: LabelAttribute) -> &'static str {
-    let row = LABEL_ATTRIBUTES.iter().find(|a| a.1 == attribute);
-    row.map_or("", |a| a.0)
-}
-
-/// The name of a function of data.
-pub fn data_word(f: DataFunction) -> &'static str {
-    let row = FUNCTIONS.iter().find(|row| row.1 == Callee::Data(f));
-    row.map_or("", |row| row.0)
-}
-
 /// Attributes of models, lower case.
 #[rustfmt::skip]
 pub const MODEL_ATTRIBUTES: &[&str] = &[
@@ -249,11 +158,11 @@ pub const MODEL_ATTRIBUTES: &[&str] = &[
     "holdfixed", "iterlim", "reslim", "scaleopt", "optcr", "optca", "tolinfeas", "tolinfrep", "linkused",
     "domlim", "bratio", "nodlim", "workspace", "workfactor", "cheat", "cutoff", "tryint", "prioropt",
     "sysout", "solprint", "solveopt", "solvelink", "savepoint", "threads", "dictfile", "dictmap", "etsolve",
-    "etsolver", "resgen", "resin", "resderiv", "resout", "resderiv", "rngbndmax", "rngbndmin", "rngmatmax",
+    "etsolver", "resgen", "resin", "resderiv", "resout", "rngbndmax", "rngbndmin", "rngmatmax",
     "rngmatmin", "rngrhsmax", "rngrhsmin", "nodusd", "procused", "rocp", "tolproj", "forcework", "defpoint",
     "integer1", "integer2", "integer3", "integer4", "integer5", "real1", "real2", "real3", "real4", "real5",
     "handle", "mcprholdfx", "pricesolve", "ts", "tn", "fdopt", "fddelta", "hessscale", "clearmodel",
-    "justscrdir", "trylinear", "tryInt", "reform", "sumdom", "numunbnd", "requestmarginals", "etalg",
+    "justscrdir", "trylinear", "reform", "sumdom", "numunbnd", "requestmarginals", "etalg",
     "numvarproj", "rescalc", "robj", "sysident", "sysver",
 ];
 
@@ -266,7 +175,6 @@ pub const FILE_ATTRIBUTES: &[&str] = &[
 ];
 
 /// Words that `option` takes a solver for: the problem types, and `emp`.
-pub const PROBLEM_TYPES: &[&str] = &[
-    "lp", "rmip", "mip", "nlp", "dnlp", "rminlp", "minlp", "qcp", "rmiqcp", "miqcp", "cns", "mcp",
-    "mpec", "rmpec", "emp",
-];
+pub fn problem_types() -> impl Iterator<Item = &'static str> {
+    ProblemType::ALL.iter().map(|t| t.name()).chain(["emp"])
+}

@@ -111,7 +111,7 @@ impl Compiler {
                 .help("declare one: `model m / all /;`")
                 .fail(self);
         };
-        let Some(using) = ProblemType::from_name(&s.using.name) else {
+        let Some(using) = ProblemType::named(&s.using.name) else {
             return self.no_problem_type(&s.using);
         };
         let mut listed = Listed::default();
@@ -221,14 +221,14 @@ impl Compiler {
                 .help("state the optimality conditions as an `mcp`")
                 .fail(self);
         }
-        let names = ProblemType::ALL.map(ProblemType::name);
+        let names: Vec<&str> = ProblemType::ALL.iter().map(|t| t.name()).collect();
         let near = match name.name.to_lowercase().as_str() {
             "qp" | "quadratic" | "socp" | "qcqp" => "qcp",
             "milp" | "ip" | "ilp" | "bip" | "integer" => "mip",
             "miqp" | "miqcqp" => "miqcp",
             "nonlinear" | "convex" => "nlp",
             "lcp" | "ncp" | "vi" => "mcp",
-            lower => nearest(lower, names).unwrap_or("lp"),
+            lower => nearest(lower, names.iter().copied()).unwrap_or("lp"),
         };
         let there_are = names.join(", ");
         Diagnostic::error("E0351", name.span)

@@ -5,6 +5,7 @@
 
 use crate::data::universe::Label;
 use crate::model::instance::Function;
+use crate::model::named::{functions, named};
 use crate::model::problem_type::ProblemType;
 use crate::source::Span;
 pub use crate::syntax::ast::{AggregateOp, BinaryOp, For, Relation, Sense, Written};
@@ -158,85 +159,86 @@ pub enum NodeKind {
     RecordName(SymbolId, Key),
 }
 
-/// Attributes that are computed.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
-#[allow(missing_docs)]
-pub enum Derived {
-    Slack,
-    SlackLo,
-    SlackUp,
-    Infeas,
-    Range,
-    /// With `option ranging`: from where to where a right-hand side or a cost may go.
-    RangeLo,
-    RangeUp,
-    /// What one unit of a right-hand side less or more is worth.
-    PriceLo,
-    PriceUp,
+named! {
+    /// Attributes that are computed, as `display` shows them.
+    #[derive(Hash)]
+    pub enum Derived {
+        Slack "Slack";
+        SlackLo "SlackLo";
+        SlackUp "SlackUp";
+        Infeas "Infeas";
+        Range "Range";
+        /// With `option ranging`: from where to where a right-hand side or a cost may go.
+        RangeLo "RangeLo";
+        RangeUp "RangeUp";
+        /// What one unit of a right-hand side less or more is worth.
+        PriceLo "PriceLo";
+        PriceUp "PriceUp";
+    }
 }
 
-/// Properties of a label within a set.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-#[allow(missing_docs)]
-pub enum LabelAttribute {
-    Val,
-    Pos,
-    Ord,
-    Off,
-    Rev,
-    Uel,
-    Len,
-    TextLen,
-    /// `.tval`: the number that the text says.
-    TextVal,
-    First,
-    Last,
+named! {
+    /// Properties of a label within a set.
+    pub enum LabelAttribute {
+        Val "val";
+        Pos "pos";
+        Ord "ord";
+        Off "off";
+        Rev "rev";
+        Uel "uel";
+        Len "len";
+        TextLen "tlen";
+        /// The number that the text says.
+        TextVal "tval";
+        First "first";
+        Last "last";
+    }
 }
 
-/// Functions that never take a variable.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-#[allow(missing_docs)]
-pub enum DataFunction {
-    Uniform,
-    UniformInt,
-    Normal,
-    RandBinomial,
-    RandLinear,
-    RandTriangle,
-    Fact,
-    Mapval,
-    Pi,
-    ExecSeed,
-    JNow,
-    JStart,
-    JDate,
-    JTime,
-    GYear,
-    GMonth,
-    GDay,
-    GHour,
-    GMinute,
-    GSecond,
-    GMillisec,
-    GDow,
-    GLeap,
-    TimeElapsed,
-    ExecError,
-    MaxExecError,
-    ErrorLevel,
-    /// Machine and licence facts that have no meaning here: 0.
-    Zero,
-    /// `numcores`
-    One,
-    GamsVersion,
-    GamsRelease,
-    Sleep,
-    HandleCollect,
-    HandleStatus,
-    HandleDelete,
-    HandleSubmit,
-    /// `readyCollect(h)`: whether nothing is left to wait for; 0, for nothing ever is.
-    ReadyCollect,
+functions! {
+    /// Functions that never take a variable.
+    pub enum DataFunction {
+        Uniform "uniform", 2, 2;
+        UniformInt "uniformint", 2, 2;
+        Normal "normal", 2, 2;
+        RandBinomial "randbinomial", 2, 2;
+        RandLinear "randlinear", 3, 3;
+        RandTriangle "randtriangle", 3, 3;
+        Fact "fact", 1, 1;
+        Mapval "mapval", 1, 1;
+        Pi "pi", 0, 0;
+        ExecSeed "execseed", 0, 0;
+        JNow "jnow", 0, 0;
+        JStart "jstart", 0, 0;
+        JDate "jdate", 3, 3;
+        JTime "jtime", 3, 3;
+        GYear "gyear", 1, 1;
+        GMonth "gmonth", 1, 1;
+        GDay "gday", 1, 1;
+        GHour "ghour", 1, 1;
+        GMinute "gminute", 1, 1;
+        GSecond "gsecond", 1, 1;
+        GMillisec "gmillisec", 1, 1;
+        GDow "gdow", 1, 1;
+        GLeap "gleap", 1, 1;
+        TimeElapsed "timeelapsed" | "timeexec", 0, 0;
+        ExecError "execerror", 0, 0;
+        MaxExecError "maxexecerror", 0, 0;
+        ErrorLevel "errorlevel", 0, 0;
+        /// Machine and licence facts that have no meaning here: 0.
+        Zero "timecomp" | "timestart" | "timeclose" | "heapsize" | "heapfree" | "heaplimit"
+            | "mathlastrc" | "mathlastec" | "mathoval" | "licensestatus", 0, 0;
+        One "numcores" | "platformcode" | "licenselevel", 0, 0;
+        GamsVersion "gamsversion", 0, 0;
+        GamsRelease "gamsrelease", 0, 0;
+        Sleep "sleep", 1, 1;
+        HandleCollect "handlecollect", 1, 1;
+        HandleStatus "handlestatus", 1, 1;
+        HandleDelete "handledelete", 1, 1;
+        HandleSubmit "handlesubmit", 1, 1;
+        /// Whether nothing is left to wait for; 0, for nothing ever is.
+        ReadyCollect "readycollect", 1, 2;
+    }
 }
 
 /// A record that must exist for a tuple to count: the table and the key.

@@ -230,9 +230,7 @@ impl Compiler {
             (Some(a), _) if is_text(a) => true,
             (Some(_), Some(s)) if s.dim() == 0 => true,
             (Some(a), Some(s)) => {
-                s.is_set()
-                    && functions::label_attribute(&a.name.to_lowercase()).is_some()
-                    && !self.is_index(last)
+                s.is_set() && LabelAttribute::named(&a.name).is_some() && !self.is_index(last)
             }
             (None, Some(s)) => s.dim() == 0 && !s.is_set(),
             (None, None) => special.is_some(),

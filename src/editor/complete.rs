@@ -7,7 +7,7 @@ use super::project::Document;
 use super::scan::{INNER_WORDS, Role};
 use super::vocabulary::{self as words, Entry};
 use crate::check::Program;
-use crate::check::functions::{self, PROBLEM_TYPES};
+use crate::check::functions;
 use crate::check::symbols::{DomainPosition, Symbol, SymbolKind};
 use crate::solve::registry::{BACKENDS, OPTION_TABLES};
 use crate::syntax::words::Class;
@@ -282,8 +282,8 @@ fn propose(list: &mut List, d: &Document, word: usize, at: usize) {
     match first.as_str() {
         "solve" => return in_solve(list, &previous),
         "option" | "options" if matches!(previous.as_str(), "option" | "options" | ",") => {
-            for t in PROBLEM_TYPES {
-                list.add(*t, CompletionKind::Option, "option", "solver of the type");
+            for t in functions::problem_types() {
+                list.add(t, CompletionKind::Option, "option", "solver of the type");
             }
             for row in OPTION_TABLES.iter().flat_map(|t| t.all()) {
                 let default = format!("default {}", row.default);
@@ -294,7 +294,7 @@ fn propose(list: &mut List, d: &Document, word: usize, at: usize) {
         "option" | "options"
             if previous == "="
                 && n > 1
-                && PROBLEM_TYPES.contains(&d.word(n - 2).to_lowercase().as_str()) =>
+                && functions::problem_types().any(|t| t.eq_ignore_ascii_case(d.word(n - 2))) =>
         {
             for b in BACKENDS {
                 list.add(b.about().name, CompletionKind::Option, "solver", "");
@@ -448,8 +448,8 @@ fn in_solve(list: &mut List, previous: &str) {
     match previous {
         "solve" => list.symbols(|s| matches!(s.kind, SymbolKind::Model(_))),
         _ if previous.starts_with("us") => {
-            for t in PROBLEM_TYPES {
-                list.add(*t, CompletionKind::Keyword, "problem type", "");
+            for t in functions::problem_types() {
+                list.add(t, CompletionKind::Keyword, "problem type", "");
             }
         }
         _ if is(&["min", "max"]) => {

@@ -60,28 +60,13 @@ fn number(x: f64, p: &Program) -> String {
 }
 
 fn kind(s: &Symbol) -> String {
-    match s.kind {
-        SymbolKind::Set { singleton: true } => "Singleton set".into(),
-        SymbolKind::Variable(k) => format!("{}variable", variable_kind(k)).trim().into(),
-        _ => {
-            let name = s.kind_name();
-            name[..1].to_uppercase() + &name[1..]
-        }
-    }
-}
-
-fn variable_kind(k: VariableKind) -> &'static str {
-    match k {
-        VariableKind::Unstated | VariableKind::Free => "Free ",
-        VariableKind::Positive => "Positive ",
-        VariableKind::Negative => "Negative ",
-        VariableKind::Binary => "Binary ",
-        VariableKind::Integer => "Integer ",
-        VariableKind::SemiContinuous => "Semicont ",
-        VariableKind::SemiInteger => "Semiint ",
-        VariableKind::Sos1 => "Sos1 ",
-        VariableKind::Sos2 => "Sos2 ",
-    }
+    let name = match s.kind {
+        SymbolKind::Set { singleton: true } => "singleton set".into(),
+        SymbolKind::Variable(VariableKind::Unstated) => "free variable".into(),
+        SymbolKind::Variable(k) => format!("{} variable", k.name()),
+        _ => s.kind_name().to_string(),
+    };
+    name[..1].to_uppercase() + &name[1..]
 }
 
 /// A symbol as it would be declared: `Parameter price(i,j) 'per ton'`.

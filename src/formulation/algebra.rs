@@ -2,10 +2,10 @@
 
 use super::gradient::gradient;
 use super::names::Names;
-use super::text::{aggregate_word, binary_word, taken};
+use super::text::taken;
 use super::tree::{Binder, Expr, IndexId, Part, Sense, Source, Variable};
 use super::{Formulation, Origin, Row, Scope, Sign};
-use crate::check::functions::{attribute_word, data_word, label_word};
+use crate::check::functions::attribute_word;
 use crate::check::node::SymbolId;
 use crate::report::json::Number;
 use serde::Serialize;
@@ -215,13 +215,13 @@ pub fn algebra(scope: Scope, f: &Formulation) -> Algebra {
     let own = f.own.iter().map(|&v| AlgebraVariable {
         name: n.name(v),
         domain: scope.symbols.domain_names(scope.get(v)),
-        sign: Sign::of(super::derive::kind(scope.symbols, v)).word(),
+        sign: Sign::of(super::derive::kind(scope.symbols, v)).name(),
         multiplier_of: None,
     });
     let multipliers = f.multipliers.iter().map(|m| AlgebraVariable {
         name: m.name.clone(),
         domain: domain(&m.domain),
-        sign: m.sign.word(),
+        sign: m.sign.name(),
         multiplier_of: Some(match m.origin {
             Origin::Row(s) => ("rows", n.name(s)),
             Origin::Lower(s) => ("lower bounds", n.name(s)),
@@ -271,7 +271,7 @@ impl Naming<'_> {
             over,
             key: self.key(&r.key),
             left: self.expression(&r.left),
-            relation: r.relation.sign(),
+            relation: r.relation.name(),
             right: self.expression(&r.right),
             terms: Vec::new(),
             pair: r.pair.map(|v| self.variable(v)),
@@ -350,23 +350,21 @@ impl Naming<'_> {
             Expr::Ord(_, p) => Expression::Ord(self.index(p)),
             Expr::Card(s) => Expression::Card(self.name(*s)),
             Expr::SameAs(a, b) => Expression::SameAs(self.index(a), self.index(b)),
-            Expr::LabelAttribute(a, _, p) => Expression::Label(label_word(*a), self.index(p)),
+            Expr::LabelAttribute(a, _, p) => Expression::Label(a.name(), self.index(p)),
             Expr::Negate(a) => Expression::Negate(self.boxed(a)),
             Expr::Not(a) => Expression::Not(self.boxed(a)),
             Expr::Sum(t) => Expression::Sum(self.marked(t)),
             Expr::Product(t) => Expression::Product(self.marked(t)),
-            Expr::Binary(op, a, b) => {
-                Expression::Binary(binary_word(*op), self.boxed(a), self.boxed(b))
-            }
+            Expr::Binary(op, a, b) => Expression::Binary(op.name(), self.boxed(a), self.boxed(b)),
             Expr::Call(f, args) => Expression::Call(f.name(), self.all(args)),
-            Expr::DataCall(f, args) => Expression::Call(data_word(*f), self.all(args)),
+            Expr::DataCall(f, args) => Expression::Call(f.name(), self.all(args)),
             Expr::Dollar(a, c) => Expression::Dollar(self.boxed(a), self.boxed(c)),
             Expr::Aggregate(op, d, e) => {
                 let (over, before) = self.over(d);
                 let body = self.boxed(e);
                 self.names.leave(before);
                 Expression::Aggregate {
-                    function: aggregate_word(*op),
+                    function: op.name(),
                     over,
                     body,
                 }

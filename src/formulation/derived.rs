@@ -221,7 +221,7 @@ pub fn discrete(m: &Machine, primal: &Primal) -> Option<(SymbolId, String)> {
 
 /// Where a model that has discrete choices leaves what only one without them has.
 pub fn of_relaxation(primal: &Primal) -> String {
-    let using = ProblemType::from_name(&primal.using).unwrap_or(ProblemType::Mip);
+    let using = ProblemType::named(&primal.using).unwrap_or(ProblemType::Mip);
     let relaxation = using.relaxation();
     format!("its relaxation has them: `solve … using {relaxation}`")
 }

@@ -229,7 +229,7 @@ fn column(d: &mut Derivation, v: SymbolId) -> Result<Vec<(bool, Expr)>, String> 
     let (left, minimum) = (sum(left), d.is_minimum());
     let name = d.scope.get(v).name.to_string();
     for (n, class) in classes.iter().enumerate() {
-        let word = class.sign.word();
+        let word = class.sign.name();
         let (suffix, guard) = match classes.len() {
             1 => (String::new(), None),
             _ => {

@@ -10,10 +10,11 @@ use super::side::{costs, short};
 use crate::check::node::SymbolId;
 use crate::model::instance::{ColumnKind, Relation, Sense};
 use crate::model::origin::Blocks;
+use crate::report::format::counted;
 use crate::run::{Machine, Studied};
 use crate::solve::ModelStatus;
 use crate::solve::nlp::convex::{Shape, shape};
-use said::{MAX_NAMES, Said, counted, listed, worth};
+use said::{MAX_NAMES, Said, listed, worth};
 
 /// A reduced cost, or a way to another optimum, below this is 0, relative.
 const NONE: f64 = 1e-9;

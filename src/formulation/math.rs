@@ -5,7 +5,7 @@ use super::data::number as shortest;
 use super::names::Names;
 use super::tree::*;
 use super::{Formulation, Row, Scope};
-use crate::check::functions::{attribute_word, data_word};
+use crate::check::functions::attribute_word;
 use crate::check::node::SymbolId;
 use crate::check::symbols::{Symbols, attribute};
 use rustc_hash::FxHashSet;
@@ -235,7 +235,6 @@ impl<'a> Setter<'a> {
         }
     }
 
-    #[allow(clippy::too_many_lines)] // one match
     fn plain(&mut self, e: &Expr) -> (Math, u8) {
         use level::*;
         match e {
@@ -343,7 +342,7 @@ impl<'a> Setter<'a> {
             Expr::DataCall(DataFunction::Pi, _) => (Math::Name(name("pi")), ATOM),
             Expr::DataCall(f, args) => {
                 let args = args.iter().map(|a| self.expr(a)).collect();
-                (Math::Function(data_word(*f), args), ATOM)
+                (Math::Function(f.name(), args), ATOM)
             }
             Expr::Dollar(a, c) => {
                 let c = Math::Bracket(Box::new(self.expr(c)));

@@ -34,6 +34,7 @@ use crate::check::node::SymbolId;
 use crate::check::symbols::{Store, Symbol, Symbols};
 use crate::data::table::Table;
 use crate::data::universe::Label;
+use crate::model::named::named;
 use crate::model::origin::Blocks;
 use crate::run::Machine;
 use crate::syntax::ast::VariableKind;
@@ -74,15 +75,16 @@ impl<'a> Scope<'a> {
     }
 }
 
-/// The sign of a variable.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Sign {
-    /// Any.
-    Free,
-    /// At least 0.
-    Positive,
-    /// At most 0.
-    Negative,
+named! {
+    /// The sign of a variable.
+    pub enum Sign {
+        /// Any.
+        Free "free";
+        /// At least 0.
+        Positive "positive";
+        /// At most 0.
+        Negative "negative";
+    }
 }
 
 impl Sign {
@@ -101,15 +103,6 @@ impl Sign {
             Self::Positive => Self::Negative,
             Self::Negative => Self::Positive,
             Self::Free => Self::Free,
-        }
-    }
-
-    /// `free`, `positive` or `negative`.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Free => "free",
-            Self::Positive => "positive",
-            Self::Negative => "negative",
         }
     }
 }

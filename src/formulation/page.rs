@@ -255,11 +255,6 @@ pub fn write(page: &Page, format: Format, title: &str) -> String {
     }
 }
 
-fn pad(t: &str, width: usize) -> String {
-    let n = t.chars().count();
-    format!("{t}{}", " ".repeat(width.saturating_sub(n)))
-}
-
 fn as_text(page: &Page, width: usize) -> String {
     let mut out = String::new();
     for b in page {
@@ -281,7 +276,7 @@ fn as_text(page: &Page, width: usize) -> String {
                         true => String::new(),
                         false => format!(" [{unit}]"),
                     };
-                    let line = format!("  {}  {words}{unit}", pad(&symbol, w));
+                    let line = format!("  {symbol:w$}  {words}{unit}");
                     let _ = writeln!(out, "{}", line.trim_end());
                 }
             }
@@ -291,7 +286,7 @@ fn as_text(page: &Page, width: usize) -> String {
                 let longest = all().map(|r| r[0].chars().count()).max();
                 let w = longest.unwrap_or(0).min(width / 2);
                 for r in all() {
-                    let _ = writeln!(out, "  {}  │ {}", pad(&r[0], w), r[1]);
+                    let _ = writeln!(out, "  {:w$}  │ {}", r[0], r[1]);
                 }
             }
             Block::Table(head, rows) => table_text(&mut out, head, rows),
@@ -308,7 +303,7 @@ fn formulas_text(out: &mut String, list: &[Formula], width: usize) {
         let body = wrapped(&f.math, width, indent);
         let mut line = match w {
             0 => format!("  {body}"),
-            _ => format!("  {}  {body}", pad(&f.name, w)),
+            _ => format!("  {:w$}  {body}", f.name),
         };
         if let Some(r) = &f.runs {
             let runs = format!("for all {}", text(r));
@@ -347,8 +342,8 @@ fn table_text(out: &mut String, head: &[String], rows: &[Vec<String>]) {
         let cells = r.iter().zip(&widths).enumerate().map(|(n, (t, w))| {
             let number = t.starts_with(|c: char| c.is_ascii_digit() || "-−+∞".contains(c));
             match n > 0 && number {
-                true => format!("{}{t}", " ".repeat(w.saturating_sub(t.chars().count()))),
-                false => pad(t, *w),
+                true => format!("{t:>w$}"),
+                false => format!("{t:w$}"),
             }
         });
         let line = cells.collect::<Vec<_>>().join("  ");

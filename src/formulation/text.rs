@@ -4,7 +4,7 @@ use super::data::{Data, Statements, head, number, quoted};
 use super::names::Names;
 use super::tree::*;
 use super::{Formulation, NewData, Row, Scope, Sign};
-use crate::check::functions::{attribute_word, data_word, label_word};
+use crate::check::functions::attribute_word;
 use crate::check::node::{SymbolId, TableId};
 use crate::check::symbols::{Store, Symbols};
 use crate::data::input::Input;
@@ -144,7 +144,6 @@ impl<'a> Writer<'a> {
         }
     }
 
-    #[allow(clippy::too_many_lines)] // one match
     fn plain(&mut self, e: &Expr) -> (String, u8) {
         use level::*;
         match e {
@@ -176,7 +175,7 @@ impl<'a> Writer<'a> {
             }
             Expr::LabelAttribute(a, _, p) => {
                 let p = self.part(p);
-                (format!("{p}.{}", label_word(*a)), ATOM)
+                (format!("{p}.{}", a.name()), ATOM)
             }
             Expr::Negate(a) => (format!("-{}", self.at(a, PRODUCT)), SUM),
             Expr::Not(a) => (format!("not {}", self.at(a, RELATION)), NOT),
@@ -191,7 +190,7 @@ impl<'a> Writer<'a> {
                     _ => RELATION,
                 };
                 let (a, b) = (self.at(a, mine + 1), self.at(b, mine + 1));
-                match binary_word(*op) {
+                match op.name() {
                     "**" => (format!("{a}**{b}"), mine),
                     word => (format!("{a} {word} {b}"), mine),
                 }
@@ -202,7 +201,7 @@ impl<'a> Writer<'a> {
             }
             Expr::DataCall(f, args) => {
                 let args: Vec<String> = args.iter().map(|a| self.expr(a)).collect();
-                let word = data_word(*f);
+                let word = f.name();
                 match args.is_empty() {
                     true => (word.to_string(), ATOM),
                     false => (format!("{word}({})", args.join(",")), ATOM),
@@ -213,7 +212,7 @@ impl<'a> Writer<'a> {
                 (format!("{a}$({c})"), DOLLAR)
             }
             Expr::Aggregate(op, d, e) => {
-                let word = aggregate_word(*op);
+                let word = op.name();
                 let before = (self.names.enter(&d.indices), self.driving.len());
                 let domain = self.domain(d);
                 let body = self.expr(e);
@@ -293,43 +292,12 @@ impl<'a> Writer<'a> {
         let condition = condition.map(|c| format!("${}", self.condition(&c)));
         let (left, right) = (self.expr(&r.left), self.expr(&r.right));
         self.names.leave(before);
-        let relation = r.relation.sign();
+        let relation = r.relation.name();
         let condition = condition.unwrap_or_default();
         format!(
             "{}{key}{condition}..\n   {left} {relation} {right};\n",
             r.name
         )
-    }
-}
-
-/// `+`, `and`, `=` …
-pub fn binary_word(op: BinaryOp) -> &'static str {
-    match op {
-        BinaryOp::Power => "**",
-        BinaryOp::And => "and",
-        BinaryOp::Or => "or",
-        BinaryOp::Xor => "xor",
-        BinaryOp::Implies => "imp",
-        BinaryOp::Equivalent => "eqv",
-        BinaryOp::Eq => "=",
-        BinaryOp::Ne => "<>",
-        BinaryOp::Lt => "<",
-        BinaryOp::Le => "<=",
-        BinaryOp::Gt => ">",
-        BinaryOp::Ge => ">=",
-        _ => "+",
-    }
-}
-
-/// `sum`, `prod` …
-pub fn aggregate_word(op: AggregateOp) -> &'static str {
-    match op {
-        AggregateOp::Sum => "sum",
-        AggregateOp::Prod => "prod",
-        AggregateOp::Smin => "smin",
-        AggregateOp::Smax => "smax",
-        AggregateOp::Sand => "sand",
-        AggregateOp::Sor => "sor",
     }
 }
 

@@ -10,35 +10,27 @@
 //! 0; all coefficients and right-hand sides are finite; solvers see no names.
 
 pub use super::function::Function;
+use super::named::named;
 /// −∞ as used in bounds.
 pub const NEG_INF: f64 = f64::NEG_INFINITY;
 /// +∞ as used in bounds.
 pub const INF: f64 = f64::INFINITY;
 
-/// `=e=`, `=g=`, `=l=`, `=n=`.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Relation {
-    /// Equal.
-    Equal,
-    /// Left side at least the right.
-    Greater,
-    /// Left side at most the right.
-    Less,
-    /// No relation.
-    Free,
+named! {
+    /// `=e=`, `=g=`, `=l=`, `=n=`.
+    pub enum Relation {
+        /// Equal.
+        Equal "=e=";
+        /// Left side at least the right.
+        Greater "=g=";
+        /// Left side at most the right.
+        Less "=l=";
+        /// No relation.
+        Free "=n=";
+    }
 }
 
 impl Relation {
-    /// `=e=`, `=g=`, `=l=`, `=n=`
-    pub fn sign(self) -> &'static str {
-        match self {
-            Self::Equal => "=e=",
-            Self::Greater => "=g=",
-            Self::Less => "=l=",
-            Self::Free => "=n=",
-        }
-    }
-
     /// Lower and upper bound of a left side whose right side is this.
     pub fn bounds(self, rhs: f64) -> [f64; 2] {
         match self {
@@ -53,13 +45,14 @@ impl Relation {
 /// Bounds from here on are infinite.
 pub const INFINITE: f64 = 1e30;
 
-/// Direction of a solve.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Sense {
-    /// `minimizing`
-    Minimize,
-    /// `maximizing`
-    Maximize,
+named! {
+    /// Direction of a solve.
+    pub enum Sense {
+        /// `minimizing`
+        Minimize "min";
+        /// `maximizing`
+        Maximize "max";
+    }
 }
 
 /// As its name.
@@ -70,14 +63,6 @@ impl serde::Serialize for Sense {
 }
 
 impl Sense {
-    /// `min` or `max`.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Minimize => "min",
-            Self::Maximize => "max",
-        }
-    }
-
     /// What the objective is multiplied by to make the problem a minimum.
     pub fn sign(self) -> f64 {
         match self {

@@ -71,7 +71,7 @@ const GAMS_SOLVERS: &[&str] = &[
 
 /// Whether an option chooses a solver: that of a problem type, or of GAMS's `emp`.
 pub fn chooses_solver(name: &str) -> bool {
-    ProblemType::from_name(name).is_some() || name.eq_ignore_ascii_case("emp")
+    ProblemType::named(name).is_some() || name.eq_ignore_ascii_case("emp")
 }
 
 /// Whether an option is the language's and not a solver's.
@@ -86,7 +86,7 @@ impl Solvers {
             return Ok(Accepted::Taken);
         }
         if chooses_solver(name) {
-            return self.check_choice(ProblemType::from_name(name), value);
+            return self.check_choice(ProblemType::named(name), value);
         }
         check(self.tables, name, value).map_err(|refused| match refused {
             Refused::Unknown(_) => {

@@ -1,43 +1,37 @@
 //! What a solver returns, and the statuses of an answer.
 
-/// GAMS's model status codes, as far as they can occur.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-#[repr(u8)]
-pub enum ModelStatus {
-    /// Optimal (for mcp: solved).
-    Optimal = 1,
-    /// Locally optimal.
-    LocallyOptimal = 2,
-    /// Unbounded.
-    Unbounded = 3,
-    /// Infeasible.
-    Infeasible = 4,
-    /// Locally infeasible.
-    LocallyInfeasible = 5,
-    /// Not solved: the last point is infeasible.
-    IntermediateInfeasible = 6,
-    /// The last point is feasible, but not shown to be optimal.
-    Feasible = 7,
-    /// A solution with all discrete columns right, not shown to be the best.
-    IntegerSolution = 8,
-    /// Not solved, and the last point is no solution.
-    IntermediateNonInteger = 9,
-    /// No point satisfies rows, bounds and discrete columns.
-    IntegerInfeasible = 10,
-    /// Error, unknown.
-    ErrorUnknown = 12,
-    /// Error, no solution.
-    ErrorNoSolution = 13,
-    /// No solution returned.
-    NoSolution = 14,
-    /// A square system, solved uniquely.
-    SolvedUnique = 15,
-    /// A square system, solved.
-    Solved = 16,
-    /// Unbounded, no solution.
-    UnboundedNoSolution = 18,
-    /// Infeasible, no solution.
-    InfeasibleNoSolution = 19,
+use super::named::named;
+
+named! {
+    /// GAMS's model status codes, as far as they can occur, with GAMS's words for them, lower case.
+    #[repr(u8)]
+    pub enum ModelStatus {
+        /// Optimal (for mcp: solved).
+        Optimal = 1 "optimal";
+        LocallyOptimal = 2 "locally optimal";
+        Unbounded = 3 "unbounded";
+        Infeasible = 4 "infeasible";
+        LocallyInfeasible = 5 "locally infeasible";
+        /// Not solved: the last point is infeasible.
+        IntermediateInfeasible = 6 "intermediate infeasible";
+        /// The last point is feasible, but not shown to be optimal.
+        Feasible = 7 "feasible solution";
+        /// A solution with all discrete columns right, not shown to be the best.
+        IntegerSolution = 8 "integer solution";
+        /// Not solved, and the last point is no solution.
+        IntermediateNonInteger = 9 "intermediate non-integer";
+        /// No point satisfies rows, bounds and discrete columns.
+        IntegerInfeasible = 10 "integer infeasible";
+        ErrorUnknown = 12 "error unknown";
+        ErrorNoSolution = 13 "error no solution";
+        NoSolution = 14 "no solution returned";
+        /// A square system, solved uniquely.
+        SolvedUnique = 15 "solved unique";
+        /// A square system, solved.
+        Solved = 16 "solved";
+        UnboundedNoSolution = 18 "unbounded - no solution";
+        InfeasibleNoSolution = 19 "infeasible - no solution";
+    }
 }
 
 impl ModelStatus {
@@ -54,86 +48,43 @@ impl ModelStatus {
         self.is_solution() || matches!(self, Self::Feasible | Self::IntegerSolution)
     }
 
-    /// GAMS's words for them, lower case.
-    const NAMES: &[(Self, &str)] = &[
-        (Self::Optimal, "optimal"),
-        (Self::LocallyOptimal, "locally optimal"),
-        (Self::Unbounded, "unbounded"),
-        (Self::Infeasible, "infeasible"),
-        (Self::LocallyInfeasible, "locally infeasible"),
-        (Self::IntermediateInfeasible, "intermediate infeasible"),
-        (Self::Feasible, "feasible solution"),
-        (Self::IntegerSolution, "integer solution"),
-        (Self::IntermediateNonInteger, "intermediate non-integer"),
-        (Self::IntegerInfeasible, "integer infeasible"),
-        (Self::ErrorUnknown, "error unknown"),
-        (Self::ErrorNoSolution, "error no solution"),
-        (Self::NoSolution, "no solution returned"),
-        (Self::SolvedUnique, "solved unique"),
-        (Self::Solved, "solved"),
-        (Self::UnboundedNoSolution, "unbounded - no solution"),
-        (Self::InfeasibleNoSolution, "infeasible - no solution"),
-    ];
-
-    /// GAMS's words for it, lower case.
-    pub fn name(self) -> &'static str {
-        Self::name_of(f64::from(self as u8)).unwrap_or_default()
-    }
-
     /// The words for a code, if it is one.
     pub(crate) fn name_of(code: f64) -> Option<&'static str> {
-        let mut rows = Self::NAMES.iter();
-        rows.find(|r| f64::from(r.0 as u8) == code).map(|r| r.1)
+        let mut all = Self::ALL.iter();
+        all.find(|s| f64::from(**s as u8) == code).map(|s| s.name())
     }
 }
 
-/// GAMS's solver status codes, as far as they can occur.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-#[repr(u8)]
-pub enum SolverStatus {
-    /// It ended as it should.
-    NormalCompletion = 1,
-    /// Iteration limit.
-    IterationInterrupt = 2,
-    /// Time limit.
-    ResourceInterrupt = 3,
-    /// The solver gave up.
-    TerminatedBySolver = 4,
-    /// Too many evaluation errors.
-    EvaluationInterrupt = 5,
-    /// The solver cannot take this model.
-    CapabilityProblems = 6,
-    /// Ctrl-C.
-    UserInterrupt = 8,
-    /// Something failed inside.
-    InternalSolverFailure = 11,
-    /// It was not asked, because of errors before.
-    ProcessingSkipped = 12,
+named! {
+    /// GAMS's solver status codes, as far as they can occur, with GAMS's words for them, lower case.
+    #[repr(u8)]
+    pub enum SolverStatus {
+        /// It ended as it should.
+        NormalCompletion = 1 "normal completion";
+        /// Iteration limit.
+        IterationInterrupt = 2 "iteration interrupt";
+        /// Time limit.
+        ResourceInterrupt = 3 "resource interrupt";
+        /// The solver gave up.
+        TerminatedBySolver = 4 "terminated by solver";
+        /// Too many evaluation errors.
+        EvaluationInterrupt = 5 "evaluation interrupt";
+        /// The solver cannot take this model.
+        CapabilityProblems = 6 "capability problems";
+        /// Ctrl-C.
+        UserInterrupt = 8 "user interrupt";
+        /// Something failed inside.
+        InternalSolverFailure = 11 "internal solver failure";
+        /// It was not asked, because of errors before.
+        ProcessingSkipped = 12 "solve processing skipped";
+    }
 }
 
 impl SolverStatus {
-    /// GAMS's words for them, lower case.
-    const NAMES: &[(Self, &str)] = &[
-        (Self::NormalCompletion, "normal completion"),
-        (Self::IterationInterrupt, "iteration interrupt"),
-        (Self::ResourceInterrupt, "resource interrupt"),
-        (Self::TerminatedBySolver, "terminated by solver"),
-        (Self::EvaluationInterrupt, "evaluation interrupt"),
-        (Self::CapabilityProblems, "capability problems"),
-        (Self::UserInterrupt, "user interrupt"),
-        (Self::InternalSolverFailure, "internal solver failure"),
-        (Self::ProcessingSkipped, "solve processing skipped"),
-    ];
-
-    /// GAMS's words for it, lower case.
-    pub fn name(self) -> &'static str {
-        Self::name_of(f64::from(self as u8)).unwrap_or_default()
-    }
-
     /// The words for a code, if it is one.
     pub(crate) fn name_of(code: f64) -> Option<&'static str> {
-        let mut rows = Self::NAMES.iter();
-        rows.find(|r| f64::from(r.0 as u8) == code).map(|r| r.1)
+        let mut all = Self::ALL.iter();
+        all.find(|s| f64::from(**s as u8) == code).map(|s| s.name())
     }
 }
 

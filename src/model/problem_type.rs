@@ -1,38 +1,41 @@
 //! The types of problems that `solve … using` names.
 
+use super::named::named;
 use std::fmt;
 
-/// What kind of problem a model states. The words are GAMS's; `emp` is known to the checker only, which refuses it.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
-pub enum ProblemType {
-    /// Linear program.
-    Lp,
-    /// Relaxed mixed-integer linear program.
-    Rmip,
-    /// Mixed-integer linear program.
-    Mip,
-    /// Nonlinear program with smooth functions.
-    Nlp,
-    /// Nonlinear program whose functions may have kinks.
-    Dnlp,
-    /// Relaxed mixed-integer nonlinear program.
-    Rminlp,
-    /// Mixed-integer nonlinear program.
-    Minlp,
-    /// Quadratically constrained program.
-    Qcp,
-    /// Relaxed mixed-integer quadratically constrained program.
-    Rmiqcp,
-    /// Mixed-integer quadratically constrained program.
-    Miqcp,
-    /// Constrained nonlinear system: as many equations as variables.
-    Cns,
-    /// Mixed complementarity problem.
-    Mcp,
-    /// Mathematical program with equilibrium constraints.
-    Mpec,
-    /// The same with its discrete variables relaxed.
-    Rmpec,
+named! {
+    /// What kind of problem a model states, in the order in which messages list them. The words are GAMS's; `emp` is known to the checker only, which refuses it.
+    #[derive(Hash)]
+    pub enum ProblemType {
+        /// Linear program.
+        Lp "lp";
+        /// Relaxed mixed-integer linear program.
+        Rmip "rmip";
+        /// Mixed-integer linear program.
+        Mip "mip";
+        /// Nonlinear program with smooth functions.
+        Nlp "nlp";
+        /// Nonlinear program whose functions may have kinks.
+        Dnlp "dnlp";
+        /// Relaxed mixed-integer nonlinear program.
+        Rminlp "rminlp";
+        /// Mixed-integer nonlinear program.
+        Minlp "minlp";
+        /// Quadratically constrained program.
+        Qcp "qcp";
+        /// Relaxed mixed-integer quadratically constrained program.
+        Rmiqcp "rmiqcp";
+        /// Mixed-integer quadratically constrained program.
+        Miqcp "miqcp";
+        /// Constrained nonlinear system: as many equations as variables.
+        Cns "cns";
+        /// Mixed complementarity problem.
+        Mcp "mcp";
+        /// Mathematical program with equilibrium constraints.
+        Mpec "mpec";
+        /// The same with its discrete variables relaxed.
+        Rmpec "rmpec";
+    }
 }
 
 /// What a problem type makes of discrete variables.
@@ -49,37 +52,6 @@ pub enum Discrete {
 use ProblemType::*;
 
 impl ProblemType {
-    /// All of them, in the order in which messages list them.
-    pub const ALL: [Self; 14] = [
-        Lp, Rmip, Mip, Nlp, Dnlp, Rminlp, Minlp, Qcp, Rmiqcp, Miqcp, Cns, Mcp, Mpec, Rmpec,
-    ];
-
-    /// The type of that name, in any case.
-    pub fn from_name(name: &str) -> Option<Self> {
-        let mut all = Self::ALL.into_iter();
-        all.find(|t| t.name().eq_ignore_ascii_case(name))
-    }
-
-    /// Lower-case name, as after `using`.
-    pub fn name(self) -> &'static str {
-        match self {
-            Lp => "lp",
-            Rmip => "rmip",
-            Mip => "mip",
-            Nlp => "nlp",
-            Dnlp => "dnlp",
-            Rminlp => "rminlp",
-            Minlp => "minlp",
-            Qcp => "qcp",
-            Rmiqcp => "rmiqcp",
-            Miqcp => "miqcp",
-            Cns => "cns",
-            Mcp => "mcp",
-            Mpec => "mpec",
-            Rmpec => "rmpec",
-        }
-    }
-
     /// Whether `minimizing` or `maximizing` belongs to it.
     pub fn has_objective(self) -> bool {
         !matches!(self, Mcp | Cns)

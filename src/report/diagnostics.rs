@@ -12,6 +12,7 @@ use miette::{
     SourceCode, SourceSpan, SpanContents,
 };
 
+use super::format::counted;
 use crate::diag::{self, Diagnostic, Severity as Serious};
 use crate::source::{FileId, SourceFile, SourceMap, whole_characters};
 
@@ -101,18 +102,15 @@ pub fn render(diagnostics: &[Diagnostic], map: &SourceMap, look: Look) -> String
 
 /// "2 errors, 1 warning"; empty where there is none.
 pub fn count(diagnostics: &[Diagnostic]) -> String {
-    let count = |s: Serious| diagnostics.iter().filter(|d| d.severity == s).count();
-    let part = |n: usize, what: &str| match n {
-        0 => None,
-        1 => Some(format!("1 {what}")),
-        n => Some(format!("{n} {what}s")),
-    };
-    let parts = [
-        part(count(Serious::Error), "error"),
-        part(count(Serious::Execution), "execution error"),
-        part(count(Serious::Warning), "warning"),
+    let kinds = [
+        (Serious::Error, "error"),
+        (Serious::Execution, "execution error"),
+        (Serious::Warning, "warning"),
     ];
-    let parts: Vec<String> = parts.into_iter().flatten().collect();
+    let count = |s: Serious| diagnostics.iter().filter(|d| d.severity == s).count();
+    let counts = kinds.map(|(severity, what)| (count(severity), what));
+    let there = counts.into_iter().filter(|c| c.0 > 0);
+    let parts: Vec<String> = there.map(|(n, what)| counted(n, what)).collect();
     parts.join(", ")
 }
 

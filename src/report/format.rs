@@ -158,6 +158,11 @@ fn exponent(x: f64, digits: usize) -> String {
     }
 }
 
+/// `1 row`, `2 rows`.
+pub fn counted(n: usize, what: &str) -> String {
+    format!("{n} {what}{}", if n == 1 { "" } else { "s" })
+}
+
 /// The shorter of the two forms, without trailing zeros.
 fn general(x: f64, digits: usize) -> String {
     let digits = digits.max(1);

@@ -179,7 +179,7 @@ fn row(
         pieces.push("0".into());
     }
     let rhs = instance.rows.rhs[i];
-    let relation = instance.rows.relation[i].sign().to_uppercase();
+    let relation = instance.rows.relation[i].name().to_uppercase();
     pieces.push(format!("{relation} {} ;", digits(rhs)));
     if let Some(&a) = activity.get(i) {
         let violation = row_violation(instance.rows.relation[i], a, rhs);

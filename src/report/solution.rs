@@ -74,7 +74,7 @@ fn rows(solved: &Solved) -> Vec<Line> {
         Line {
             symbol,
             labels,
-            relation: Some(rows.relation[i].sign()),
+            relation: Some(rows.relation[i].name()),
             lower: Number(lower),
             level: Number(solved.activity[i]),
             upper: Number(upper),

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
+use super::format::counted;
 use super::names::Names;
 use super::summary::digits;
 use crate::model::instance::Instance;
@@ -28,13 +29,6 @@ pub fn explain(findings: &[Finding], instance: &Instance, names: &dyn Names) -> 
         out.text.push(text);
     }
     out
-}
-
-fn counted(n: usize, one: &str) -> String {
-    match n {
-        1 => format!("1 {one}"),
-        n => format!("{n} {one}s"),
-    }
 }
 
 fn short(v: f64) -> String {
@@ -277,6 +271,6 @@ fn over(head: impl Into<String>, lines: impl Iterator<Item = String>) -> String 
 
 /// `=g= 30`
 fn relation(instance: &Instance, i: usize) -> String {
-    let sign = instance.rows.relation[i].sign();
+    let sign = instance.rows.relation[i].name();
     format!("{sign} {}", digits(instance.rows.rhs[i]))
 }

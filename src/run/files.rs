@@ -53,10 +53,8 @@ impl Machine<'_> {
         }
         let from = self.asking(span);
         let read = self.host().read(name, from.as_deref());
-        match read {
-            Ok((_, text)) => Ok(text),
-            Err(e) => Err(Box::new(refused("E0471", "read", name, &e, span))),
-        }
+        read.map(|f| f.1)
+            .map_err(|e| Box::new(refused("E0471", "read", name, &e, span)))
     }
 
     /// Reads the bytes of a file; a diagnostic if that is not possible.
@@ -66,10 +64,8 @@ impl Machine<'_> {
         }
         let from = self.asking(span);
         let read = self.host().read_bytes(name, from.as_deref());
-        match read {
-            Ok((_, bytes)) => Ok(bytes),
-            Err(e) => Err(Box::new(refused("E0471", "read", name, &e, span))),
-        }
+        read.map(|f| f.1)
+            .map_err(|e| Box::new(refused("E0471", "read", name, &e, span)))
     }
 
     /// The file whose text asks for another one.

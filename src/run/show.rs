@@ -251,17 +251,7 @@ impl Machine<'_> {
         if let Some(o) = stored_attribute(attr) {
             return Some(Cow::Borrowed(self.store.table(table + o)));
         }
-        let which = match attr {
-            "Slack" => Derived::Slack,
-            "SlackLo" => Derived::SlackLo,
-            "SlackUp" => Derived::SlackUp,
-            "Infeas" => Derived::Infeas,
-            "RangeLo" => Derived::RangeLo,
-            "RangeUp" => Derived::RangeUp,
-            "PriceLo" => Derived::PriceLo,
-            "PriceUp" => Derived::PriceUp,
-            _ => Derived::Range,
-        };
+        let which = Derived::named(attr)?;
         if let Some(t) = self.ranges.get(&(s, which)) {
             return Some(Cow::Borrowed(t));
         }

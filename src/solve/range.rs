@@ -288,7 +288,6 @@ impl<'a> Cone<'a> {
     }
 
     /// The cone's optimum with other bounds for a variable; inner None: no direction is like this.
-    #[allow(clippy::option_option)]
     fn least(&self, v: usize, [lower, upper]: [f64; 2]) -> Option<Option<(Simplex, Vec<f64>)>> {
         let mut s = self.engine.clone();
         s.set_bounds(v, lower, upper);

@@ -13,7 +13,6 @@ use std::sync::LazyLock;
 /// All of them.
 pub static BACKENDS: &[&dyn Backend] = &[
     &lp::Clarabel,
-    &lp::SimplexAlone,
     #[cfg(feature = "pounce")]
     &nlp::Nonlinear(&nlp::pounce::Pounce),
     #[cfg(feature = "ipopt")]

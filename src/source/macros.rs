@@ -10,6 +10,7 @@
 use std::cell::Cell;
 
 use super::directives::unquoted;
+use super::preprocess::outside_quotes;
 use rustc_hash::FxHashMap;
 
 /// Calls inside calls.
@@ -265,29 +266,16 @@ fn word_len(text: &str) -> usize {
 
 /// The arguments from the parenthesis at `open` on, and the place after the closing one.
 fn arguments(line: &str, open: usize) -> Option<(Vec<String>, usize)> {
-    let bytes = line.as_bytes();
-    let mut depth = 0usize;
     let mut list = Vec::new();
     let mut start = open + 1;
-    let mut i = open;
-    while i < bytes.len() {
-        match bytes[i] {
-            b'(' | b'[' | b'{' => depth += 1,
-            b')' | b']' | b'}' => {
-                depth = depth.checked_sub(1)?;
-                if depth == 0 {
-                    list.push(line[start..i].trim().to_owned());
-                    return Some((list, i + 1));
-                }
-            }
-            b',' if depth == 1 => {
-                list.push(line[start..i].trim().to_owned());
-                start = i + 1;
-            }
-            q @ (b'\'' | b'"') => i += memchr::memchr(q, &bytes[i + 1..]).map_or(0, |n| n + 1),
-            _ => {}
+    for (i, b, depth) in outside_quotes(line.as_bytes(), open) {
+        if depth == 0 || (b == b',' && depth == 1) {
+            list.push(line[start..i].trim().to_owned());
+            start = i + 1;
         }
-        i += 1;
+        if depth == 0 {
+            return Some((list, start));
+        }
     }
     None
 }

@@ -28,7 +28,7 @@ pub(crate) use map::whole_characters;
 pub use map::{FileId, Place, SourceFile, SourceMap};
 pub(crate) use marks::Marks;
 pub use modes::{Modes, Switches};
-pub(crate) use preprocess::{DELIMITED, Preprocessor, quoted_end};
+pub(crate) use preprocess::{DELIMITED, Preprocessor, outside_quotes, quoted_end};
 pub use preprocess::{Ending, Known, NothingKnown, PreprocessOptions, ReadData, SymbolKindName};
 pub(crate) use variables::constant as named_constant;
 

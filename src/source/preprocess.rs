@@ -837,6 +837,27 @@ pub(crate) fn quoted_end(bytes: &[u8], i: usize) -> Option<usize> {
     (rest[n] == q).then_some(i + n + 2)
 }
 
+/// The bytes from a place on that are outside of quotes: each with its place and the number of parentheses around it, of
+/// which an opening one counts itself, a closing one not.
+pub(crate) fn outside_quotes(
+    bytes: &[u8],
+    from: usize,
+) -> impl Iterator<Item = (usize, u8, usize)> + '_ {
+    let (mut next, mut depth) = (from, 0usize);
+    std::iter::from_fn(move || {
+        let at = next;
+        let b = *bytes.get(at)?;
+        next += 1;
+        match b {
+            b'(' | b'[' | b'{' => depth += 1,
+            b')' | b']' | b'}' => depth = depth.saturating_sub(1),
+            b'\'' | b'"' => next += memchr::memchr(b, &bytes[next..]).map_or(0, |n| n + 1),
+            _ => {}
+        }
+        Some((at, b, depth))
+    })
+}
+
 /// Whether a byte stands in a quoted text of a line that is no directive: there `%1` is text, such as `'%8.5f'`,
 /// unless the file got arguments.
 fn in_text(line: &str, at: usize, dollar: u8) -> bool {

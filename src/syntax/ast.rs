@@ -5,6 +5,7 @@
 
 use crate::data::value;
 pub use crate::model::instance::{Relation, Sense};
+use crate::model::named::named;
 use crate::source::{Span, Switches};
 
 /// A name as it was spelled. Names are compared without regard to case.
@@ -163,29 +164,30 @@ pub struct TableDecl {
     pub symbols: Vec<SymbolDecl>,
 }
 
-/// Kinds of variables.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum VariableKind {
-    /// No kind written: free if new, unchanged if known.
-    Unstated,
-    /// −∞ … +∞.
-    Free,
-    /// 0 … +∞.
-    Positive,
-    /// −∞ … 0.
-    Negative,
-    /// 0 or 1.
-    Binary,
-    /// Integers 0 … +∞.
-    Integer,
-    /// 0 or between bounds.
-    SemiContinuous,
-    /// 0 or an integer between bounds.
-    SemiInteger,
-    /// Special ordered set of type 1.
-    Sos1,
-    /// Special ordered set of type 2.
-    Sos2,
+named! {
+    /// Kinds of variables.
+    pub enum VariableKind {
+        /// No kind written: free if new, unchanged if known.
+        Unstated "";
+        /// −∞ … +∞.
+        Free "free";
+        /// 0 … +∞.
+        Positive "positive" | "nonnegative";
+        /// −∞ … 0.
+        Negative "negative";
+        /// 0 or 1.
+        Binary "binary";
+        /// Integers 0 … +∞.
+        Integer "integer";
+        /// 0 or between bounds.
+        SemiContinuous "semicont";
+        /// 0 or an integer between bounds.
+        SemiInteger "semiint";
+        /// Special ordered set of type 1.
+        Sos1 "sos1";
+        /// Special ordered set of type 2.
+        Sos2 "sos2";
+    }
 }
 
 impl VariableKind {
@@ -355,45 +357,30 @@ pub enum UnaryOp {
     Not,
 }
 
-/// Infix operators, loosest first: `-> <=>`, `or xor`, `and`, (`not`), relations, `+ -`, `* /`, (unary minus), `**`, `$`.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum BinaryOp {
-    /// `->`, `imp`
-    Implies,
-    /// `<=>`, `eqv`
-    Equivalent,
-    /// `or`
-    Or,
-    /// `xor`
-    Xor,
-    /// `and`
-    And,
-    /// `=`, `eq`
-    Eq,
-    /// `<>`, `ne`
-    Ne,
-    /// `<`, `lt`
-    Lt,
-    /// `<=`, `le`
-    Le,
-    /// `>`, `gt`
-    Gt,
-    /// `>=`, `ge`
-    Ge,
-    /// `+`
-    Add,
-    /// `-`
-    Subtract,
-    /// `*`
-    Multiply,
-    /// `/`
-    Divide,
-    /// `**`
-    Power,
-    /// `++` in an index position: circular lead
-    CircularPlus,
-    /// `--` in an index position: circular lag
-    CircularMinus,
+named! {
+    /// Infix operators, loosest first: `-> <=>`, `or xor`, `and`, (`not`), relations, `+ -`, `* /`, (unary minus), `**`, `$`.
+    pub enum BinaryOp {
+        Implies "imp" | "->";
+        Equivalent "eqv" | "<=>";
+        Or "or";
+        Xor "xor";
+        And "and";
+        Eq "=" | "eq";
+        Ne "<>" | "ne";
+        Lt "<" | "lt";
+        Le "<=" | "le";
+        Gt ">" | "gt";
+        Ge ">=" | "ge";
+        Add "+";
+        Subtract "-";
+        Multiply "*";
+        Divide "/";
+        Power "**";
+        /// In an index position: circular lead.
+        CircularPlus "++";
+        /// In an index position: circular lag.
+        CircularMinus "--";
+    }
 }
 
 /// Sign of a term in a chain.
@@ -414,21 +401,16 @@ pub enum Factor {
     Divide,
 }
 
-/// Operators over a domain.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum AggregateOp {
-    /// `sum`
-    Sum,
-    /// `prod`
-    Prod,
-    /// `smin`
-    Smin,
-    /// `smax`
-    Smax,
-    /// `sand`
-    Sand,
-    /// `sor`
-    Sor,
+named! {
+    /// Operators over a domain.
+    pub enum AggregateOp {
+        Sum "sum";
+        Prod "prod";
+        Smin "smin";
+        Smax "smax";
+        Sand "sand";
+        Sor "sor";
+    }
 }
 
 /// A file of `put`.

@@ -15,7 +15,7 @@ use super::slips;
 use super::split::Raw;
 use super::words::{self, Class};
 use crate::diag::Diagnostic;
-use crate::source::Span;
+use crate::source::{Span, outside_quotes};
 
 /// What is wrong with a statement, and whether it is two.
 pub(super) struct Explanation {
@@ -254,23 +254,9 @@ pub(super) fn is_relation(bytes: &[u8]) -> bool {
 
 /// The parenthesis that closes the one at `open`, quotes respected.
 pub(super) fn closing(bytes: &[u8], open: usize) -> Option<usize> {
-    let mut depth = 0usize;
-    let mut i = open;
-    while i < bytes.len() {
-        match bytes[i] {
-            b'(' | b'[' | b'{' => depth += 1,
-            b')' | b']' | b'}' => {
-                depth = depth.checked_sub(1)?;
-                if depth == 0 {
-                    return Some(i);
-                }
-            }
-            q @ (b'\'' | b'"') => i += memchr::memchr(q, &bytes[i + 1..]).map_or(0, |n| n + 1),
-            _ => {}
-        }
-        i += 1;
-    }
-    None
+    let mut inside = outside_quotes(bytes, open);
+    inside.next().filter(|&(_, _, depth)| depth > 0)?;
+    inside.find(|&(_, _, depth)| depth == 0).map(|(at, ..)| at)
 }
 
 /// Slips of any writer.
@@ -423,18 +409,8 @@ fn before_is_name(text: &str, at: usize) -> bool {
 
 /// Whether the parenthesis at `at` closes none before it.
 fn unmatched_close(bytes: &[u8], at: usize) -> bool {
-    let mut depth = 0usize;
-    let mut i = 0;
-    while i < at {
-        match bytes[i] {
-            b'(' | b'[' | b'{' => depth += 1,
-            b')' | b']' | b'}' => depth = depth.saturating_sub(1),
-            q @ (b'\'' | b'"') => i += memchr::memchr(q, &bytes[i + 1..]).map_or(0, |n| n + 1),
-            _ => {}
-        }
-        i += 1;
-    }
-    depth == 0
+    let before = outside_quotes(bytes, 0).take_while(|e| e.0 < at);
+    before.last().is_none_or(|(_, _, depth)| depth == 0)
 }
 
 /// What a rule is called.

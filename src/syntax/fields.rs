@@ -1,6 +1,7 @@
 //! Lines of data under `$onDelim`: fields with a comma or blanks between them.
 
 use super::data::is_space;
+use crate::source::outside_quotes;
 
 /// Marks a line of data under `$onDelim`.
 pub(super) const MARK: u8 = crate::source::DELIMITED.as_bytes()[0];
@@ -14,19 +15,7 @@ pub(super) struct Fields<'t> {
 
 /// Whether commas separate the fields of a line.
 pub(super) fn has_comma(line: &str) -> bool {
-    let bytes = line.as_bytes();
-    let mut i = 0;
-    while i < bytes.len() {
-        match bytes[i] {
-            b',' => return true,
-            q @ (b'\'' | b'"') => {
-                i += memchr::memchr(q, &bytes[i + 1..]).map_or(0, |n| n + 1);
-            }
-            _ => {}
-        }
-        i += 1;
-    }
-    false
+    outside_quotes(line.as_bytes(), 0).any(|(_, b, _)| b == b',')
 }
 
 impl<'t> Fields<'t> {

@@ -5,6 +5,7 @@
 use super::explain::{Failure, closing, is_relation};
 use super::words::{self, Class};
 use crate::diag::Diagnostic;
+use crate::source::outside_quotes;
 
 /// Equations without `..`, without a relation, or with two.
 pub(super) fn equation(f: &Failure<'_>) -> Option<Diagnostic> {
@@ -207,20 +208,8 @@ fn without_relation(f: &Failure<'_>, dots: usize) -> Option<Diagnostic> {
 
 /// The first byte from `from` on, outside parentheses and quotes, where `test` holds.
 pub(super) fn top_level(bytes: &[u8], from: usize, test: impl Fn(&[u8]) -> bool) -> Option<usize> {
-    let mut depth = 0usize;
-    let mut i = from;
-    while i < bytes.len() {
-        match bytes[i] {
-            b'(' | b'[' | b'{' => depth += 1,
-            b')' | b']' | b'}' => depth = depth.saturating_sub(1),
-            q @ (b'\'' | b'"') => {
-                i += memchr::memchr(q, &bytes[i + 1..]).map_or(1, |n| n + 2);
-                continue;
-            }
-            _ if depth == 0 && test(&bytes[i..]) => return Some(i),
-            _ => {}
-        }
-        i += 1;
-    }
-    None
+    let plain = |b: u8| !b"()[]{}'\"".contains(&b);
+    outside_quotes(bytes, from)
+        .find(|&(i, b, depth)| depth == 0 && plain(b) && test(&bytes[i..]))
+        .map(|(i, ..)| i)
 }

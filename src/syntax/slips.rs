@@ -636,7 +636,7 @@ fn solve(f: &Failure<'_>) -> Option<Diagnostic> {
     let said = |message: &str, help: &str| {
         Some(f.error("E0218", f.at, token.len()).says(message).help(help))
     };
-    if ProblemType::from_name(token).is_some() {
+    if ProblemType::named(token).is_some() {
         let write = format!("write `solve m using {token} minimizing z;`");
         return said("`using` stands before the type of the model", &write);
     }

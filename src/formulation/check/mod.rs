@@ -9,6 +9,7 @@ use super::tree::Variable;
 use super::{Formulation, Scope, dual, kkt, text};
 use crate::check::node::SymbolId;
 use crate::data::universe::{Label, Universe};
+use crate::diag::Severity;
 use crate::host::{Found, Host, HostError};
 use crate::model::origin::{Block, Blocks};
 use crate::run::{Generated, Machine, Options, StudyChoice};
@@ -178,7 +179,10 @@ fn generated(scope: Scope, f: &Formulation) -> Result<Instance, String> {
         },
     );
     found.ok_or_else(|| {
-        let first = finished.diagnostics.iter().find(|d| d.code != "W");
+        let first = finished
+            .diagnostics
+            .iter()
+            .find(|d| d.severity != Severity::Warning);
         let place = |d: &crate::diag::Diagnostic| {
             let line = finished.map.line(d.span);
             let text = text.lines().nth(line.saturating_sub(1)).unwrap_or_default();

@@ -47,10 +47,7 @@ pub(super) fn dual(scope: Scope, primal: &Primal, f: &Formulation, d: &Instance)
 
 /// A program with the tangents at a point for its functions, and without the columns that are said.
 fn tangents(p: &instance::Instance, x: &[f64], without: &[bool]) -> Option<instance::Instance> {
-    let mut e = Evaluator::new(p);
-    let mut activity = vec![0.0; p.row_count()];
-    e.rows(x, &mut activity).ok()?;
-    let jacobian = e.jacobian_rows(x).ok()?;
+    let (activity, jacobian) = Evaluator::new(p).linearised(x).ok()?;
     let mut out = instance::Instance {
         columns: p.columns.clone(),
         objective: p.objective,

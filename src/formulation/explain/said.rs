@@ -4,6 +4,7 @@ use super::Explained;
 use crate::formulation::range::RowRange;
 use crate::formulation::side::short;
 use crate::model::origin::Blocks;
+use crate::report::format::counted;
 
 /// More records than this are not named; more sentences of one kind are not said.
 pub(super) const MAX_NAMES: usize = 12;
@@ -158,11 +159,6 @@ pub(super) fn worth(
             (lead, by, words)
         }
     }
-}
-
-/// `1 row`, `2 rows`.
-pub(super) fn counted(n: usize, what: &str) -> String {
-    format!("{n} {what}{}", if n == 1 { "" } else { "s" })
 }
 
 /// Names with commas, the last after "and"; of more than `most` only the first and how many others there are.

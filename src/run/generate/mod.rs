@@ -402,7 +402,7 @@ impl Builder<'_, '_> {
         };
         if violated {
             let name = self.m.record_name(e.symbol, key);
-            let sign = relation.sign();
+            let sign = relation.name();
             Diagnostic::execution("E0410", e.span)
                 .says(format!("the row {name} has no variables and cannot hold: 0 {sign} {rhs}"))
                 .label("empty and infeasible")

@@ -377,18 +377,13 @@ fn with_squares(
 ) -> Option<WithForms> {
     let mut evaluator = Evaluator::new(instance);
     let origin = vec![0.0; instance.column_count()];
-    let mut activity = vec![0.0; instance.row_count()];
-    evaluator.rows(&origin, &mut activity).ok()?;
-    let (start, column) = evaluator.jacobian_pattern();
-    let (start, column) = (start.to_vec(), column.to_vec());
-    let mut slope = vec![0.0; column.len()];
-    evaluator.jacobian(&origin, &mut slope).ok()?;
+    let (activity, slopes) = evaluator.linearised(&origin).ok()?;
     let (direction, nonlinear) = (directions(instance), instance.nonlinear_rows());
     let mut builder = Builder::new(instance);
     builder.entries.retain(|e| !nonlinear[e.0]);
     for row in (0..nonlinear.len()).filter(|&i| nonlinear[i]) {
         builder.rows.rhs[row] -= activity[row];
-        let linear = (start[row]..start[row + 1]).map(|k| (row, column[k], slope[k]));
+        let linear = slopes[row].iter().map(|&(j, v)| (row, j as u32, v));
         builder.entries.extend(linear);
         let all = hessian(instance, &mut evaluator, row, direction[row])?;
         for (columns, entries) in blocks(&all) {

@@ -152,17 +152,11 @@ impl Bridge for LeastSquares {
         }
         let z = instance.objective?.column as usize;
         let mut outcome = answer.outcome.clone();
-        let mut evaluator = Evaluator::first_order(instance);
-        let mut activity = vec![0.0; instance.row_count()];
-        let mut jacobian = vec![0.0; evaluator.jacobian_pattern().1.len()];
         let level = &mut outcome.level;
-        evaluator.rows(level, &mut activity).ok()?;
-        evaluator.jacobian(level, &mut jacobian).ok()?;
-        let (start, column) = evaluator.jacobian_pattern();
-        let steep = (start[self.row]..start[self.row + 1]).any(|k| {
-            let j = column[k] as usize;
+        let (activity, slopes) = Evaluator::first_order(instance).linearised(level).ok()?;
+        let steep = slopes[self.row].iter().any(|&(j, slope)| {
             let fixed = instance.columns.lower[j] == instance.columns.upper[j];
-            let slope = jacobian[k] / self.coefficient * level[j].abs().max(1.0);
+            let slope = slope / self.coefficient * level[j].abs().max(1.0);
             j != z && !fixed && slope.abs() > FLAT
         });
         if steep {

@@ -28,6 +28,7 @@ pub mod nonlinear;
 use crate::model::instance::{INFINITE, Instance, Relation, Sense};
 use crate::model::outcome::{Claim, ModelStatus, Outcome};
 use crate::model::sum::Sum;
+use crate::solve::lp::form::{self, Problem};
 use crate::solve::vector::largest;
 
 /// Relative tolerance for primal and dual residuals and the gap.
@@ -407,43 +408,9 @@ pub fn proves_infeasible(instance: &Instance, y: &[f64]) -> bool {
     if y.len() != instance.row_count() || y.iter().any(|v| !v.is_finite()) {
         return false;
     }
-    let n = instance.column_count();
-    let mut reach = vec![Sum::default(); n];
-    let mut reach_size = vec![0.0f64; n];
-    let (mut margin, mut size) = (Sum::default(), 0.0f64);
-    let unit = largest(y);
-    for (i, &y) in y.iter().enumerate() {
-        let wrong = wrong_sign(instance.rows.relation[i], y);
-        if wrong > 1e-9 * unit {
-            return false;
-        }
-        if wrong > 0.0 {
-            continue;
-        }
-        margin.add_product(y, instance.rows.rhs[i]);
-        size = size.max((y * instance.rows.rhs[i]).abs());
-        for (j, a) in instance.matrix.row(i) {
-            reach[j].add_product(y, a);
-            reach_size[j] = reach_size[j].max((y * a).abs());
-        }
-    }
-    for j in 0..n {
-        let r = reach[j].value();
-        let bound = if r > 0.0 {
-            instance.columns.upper[j]
-        } else {
-            instance.columns.lower[j]
-        };
-        if r.abs() <= 1e-9 * reach_size[j] && bound.abs() >= INFINITE {
-            continue;
-        }
-        if r != 0.0 {
-            margin.add_product(-r, bound);
-            size = size.max((r * bound).abs());
-        }
-    }
-    let margin = margin.value();
-    margin.is_finite() && margin > 1e-9 * size
+    let p = Problem::of(instance);
+    let (bounds, sides) = ([&*p.lower, &*p.upper], [&*p.row_lower, &*p.row_upper]);
+    form::proves_infeasible(&p.columns, bounds, sides, y, [1e-9, 1e-9])
 }
 
 /// Whether the direction `d` of the columns leads to ever better points: rows and bounds allow it

@@ -16,6 +16,7 @@
 
 use crate::model::instance::{INFINITE, Instance, Relation};
 use crate::model::outcome::{Basis, BasisStatus};
+use crate::model::sum::Sum;
 use crate::solve::{Outcome, SolveError};
 
 /// A sparse matrix in compressed form; "lines" are columns or rows.
@@ -92,6 +93,15 @@ impl Sparse {
     }
 }
 
+/// A bound, infinite where it counts as such.
+fn infinite(b: f64) -> f64 {
+    if b.abs() >= INFINITE {
+        f64::INFINITY.copysign(b)
+    } else {
+        b
+    }
+}
+
 /// `min cᵀx + offset, L ≤ Ax ≤ U, l ≤ x ≤ u`, with A kept both ways.
 #[derive(Clone, Debug, Default)]
 pub struct Problem {
@@ -114,6 +124,28 @@ pub struct Problem {
 }
 
 impl Problem {
+    /// The linear part of an instance as a minimum, rows and columns in their order.
+    pub fn of(instance: &Instance) -> Self {
+        let finite = |bounds: &[f64]| bounds.iter().copied().map(infinite).collect();
+        let mut out = Self {
+            cost: vec![0.0; instance.column_count()],
+            lower: finite(&instance.columns.lower),
+            upper: finite(&instance.columns.upper),
+            ..Self::default()
+        };
+        if let Some(o) = instance.objective {
+            out.cost[o.column as usize] = instance.sign();
+        }
+        for (i, &rhs) in instance.rows.rhs.iter().enumerate() {
+            let [lo, hi] = instance.rows.relation[i].bounds(rhs);
+            out.row_lower.push(lo);
+            out.row_upper.push(hi);
+            out.rows.push(instance.matrix.row(i));
+        }
+        out.columns = out.rows.transpose(out.n());
+        out
+    }
+
     /// Number of columns.
     pub fn n(&self) -> usize {
         self.cost.len()
@@ -185,28 +217,36 @@ pub fn proves_infeasible(
     [clear, noise]: [f64; 2],
 ) -> bool {
     let top = y.iter().fold(0.0f64, |t, v| t.max(v.abs()));
-    let (mut margin, mut size) = (0.0, 0.0f64);
+    let (mut margin, mut size) = (Sum::default(), 0.0f64);
+    let mut used = y.to_vec();
     for (i, &y) in y.iter().enumerate() {
         let side = if y > 0.0 { row_lower[i] } else { row_upper[i] };
         if side.is_finite() {
-            margin += y * side;
+            margin.add_product(y, side);
             size = size.max((y * side).abs());
         } else if y.abs() > noise * top {
             return false;
+        } else {
+            used[i] = 0.0;
         }
     }
     for j in 0..columns.lines() {
-        let terms = columns.line(j).map(|(i, a)| a * y[i]);
-        let (reach, largest) = terms.fold((0.0, 0.0f64), |(r, l), t| (r + t, l.max(t.abs())));
+        let (mut reach, mut largest) = (Sum::default(), 0.0f64);
+        for (i, a) in columns.line(j) {
+            reach.add_product(a, used[i]);
+            largest = largest.max((a * used[i]).abs());
+        }
+        let reach = reach.value();
         let bound = if reach > 0.0 { upper[j] } else { lower[j] };
         if bound.is_finite() {
-            margin -= reach * bound;
+            margin.add_product(-reach, bound);
             size = size.max((reach * bound).abs());
         } else if reach.abs() > noise * largest {
             return false;
         }
     }
-    margin > clear * size
+    let margin = margin.value();
+    margin.is_finite() && margin > clear * size
 }
 
 /// A point of a [`Problem`] with its multipliers.
@@ -337,15 +377,6 @@ impl Form {
 
     fn made(instance: &Instance, definition: Option<Definition>) -> Self {
         let (m, n) = (instance.row_count(), instance.column_count());
-        let infinite = |b: f64| {
-            if b >= INFINITE {
-                f64::INFINITY
-            } else if b <= -INFINITE {
-                f64::NEG_INFINITY
-            } else {
-                b
-            }
-        };
         let sign = instance.sign();
         let mut number = vec![u32::MAX; n];
         let mut columns = Vec::with_capacity(n);

@@ -85,7 +85,7 @@ impl Ended {
 }
 
 /// The solver of linear programs, `option lp = clarabel`: the simplex method, and where that takes long
-/// an interior-point method and a finish by the simplex method.
+/// an interior-point method and a finish by the simplex method. As `option lp = simplex` the simplex method alone.
 ///
 /// Its options: [`OPTIONS`].
 #[derive(Clone, Copy, Debug, Default)]
@@ -131,9 +131,9 @@ impl Backend for Clarabel {
     fn about(&self) -> About {
         About {
             name: "clarabel",
-            aliases: &[],
+            aliases: &["simplex"],
             version: "lp: interior point on faer 0.24.4, then Clarabel 0.11.1, with a simplex finish on feral 0.22.0",
-            supports: SUPPORTS,
+            supports: Supports::new(TYPES, Terms::Linear),
             options: &OPTIONS,
             option_files: &["clarabel"],
         }
@@ -145,6 +145,7 @@ impl Backend for Clarabel {
 
     fn solve(&self, task: &Task, settings: &Settings, budget: &Budget) -> Replied {
         let method = match (settings.option("method").as_deref(), task.basis) {
+            _ if task.choice == Some("simplex") => Method::Simplex,
             (_, Some(basis)) => Method::Restart(basis),
             (Some("interior"), _) => Method::Interior,
             (Some("crossover"), _) => Method::Crossover,
@@ -152,30 +153,6 @@ impl Backend for Clarabel {
             _ => Method::Auto,
         };
         Ok(solve(task.instance, settings, budget, method)?.into())
-    }
-}
-
-/// The simplex method alone, `option lp = simplex`.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct SimplexAlone;
-
-impl Backend for SimplexAlone {
-    fn about(&self) -> About {
-        About {
-            name: "simplex",
-            aliases: &[],
-            version: "lp: the simplex method alone, bmod's own, on feral 0.22.0",
-            supports: Supports {
-                only_by_name: true,
-                ..SUPPORTS
-            },
-            options: &OPTIONS,
-            option_files: &["clarabel"],
-        }
-    }
-
-    fn solve(&self, task: &Task, settings: &Settings, budget: &Budget) -> Replied {
-        Ok(solve(task.instance, settings, budget, Method::Simplex)?.into())
     }
 }
 
@@ -194,8 +171,6 @@ pub(super) const TYPES: &[ProblemType] = &[
     ProblemType::Mpec,
     ProblemType::Rmpec,
 ];
-
-const SUPPORTS: Supports = Supports::new(TYPES, Terms::Linear);
 
 /// What a way gave, in the units of the scaled problem.
 struct Gave {
@@ -606,8 +581,8 @@ fn auto(p: &Problem, accuracy: Accuracy, strategies: Strategies, budget: &Budget
     concluded(simplex, ended, accuracy, budget)
 }
 
-/// Interior point, then a basis from it, then the simplex method. Clarabel's point comes second: where none of the first leads to a
-/// vertex, as in ill-conditioned programs and those without a solution.
+/// Interior point, then a basis from it, then the simplex method. Clarabel's point comes second: where the first is none, as in
+/// programs without a solution.
 fn finished(
     p: &Problem,
     layout: Option<barrier::Layout>,
@@ -618,27 +593,18 @@ fn finished(
     if is_trivial(p) {
         return simplex_only(p, accuracy, budget);
     }
-    let own = given(barrier::solve(
-        p,
-        None,
-        layout,
-        [FINE, USEFUL].into(),
-        budget,
-    ));
-    let own = match own.ended == Ended::Failed {
-        true => own,
-        false => match finished_from(p, own, u64::MAX, accuracy, strategies, budget) {
-            (done, true) => return done,
-            (own, false) => own,
-        },
-    };
-    let mut answer = given(interior::solve(p, None, 1e-10, budget));
-    answer.iterations += own.iterations;
-    let (second, _) = finished_from(p, answer, u64::MAX, accuracy, strategies, budget);
-    match (&second.ended, &own.ended) {
-        (Ended::Failed | Ended::TooLarge(_), Ended::Solved) => own,
-        _ => second,
+    let goal = [FINE, USEFUL].into();
+    let mut first = given(barrier::solve(p, None, layout, goal, budget));
+    if first.ended != Ended::Failed {
+        let (done, over) = finished_from(p, first, u64::MAX, accuracy, strategies, budget);
+        if over || done.ended == Ended::Solved {
+            return done;
+        }
+        first = done;
     }
+    let mut answer = given(interior::solve(p, None, 1e-10, budget));
+    answer.iterations += first.iterations;
+    finished_from(p, answer, u64::MAX, accuracy, strategies, budget).0
 }
 
 /// A vertex and its basis, from an interior point, with so many pushes and pivots at most; false: the interior point is all there is.

@@ -64,7 +64,7 @@ pub(super) fn major_line(
         format!(
             "{:5} {pivots:7}  {:<9} {t:5.3} {prox:8.1e} {:11.4e} {step:8.1e}   {kind} {tries:4}   ({})",
             run.majors,
-            end.word(),
+            end.name(),
             point.residual,
             worst(run, point)
         )
@@ -86,7 +86,7 @@ pub(super) fn try_line(run: &Run, end: PathEnd, t: f64, prox: f64, pivots: usize
     note(run, || {
         format!(
             "      {pivots:7}  {:<9} {t:5.3} {prox:8.1e}{}",
-            end.word(),
+            end.name(),
             if cover { " (from slacks)" } else { "" }
         )
     });

@@ -33,6 +33,7 @@ use super::basis::{Basis, Sparse};
 use super::linear::{Kind, LinearProblem, Variable, factorise, solve_refined, solves};
 use super::random::Random;
 use super::run::{Run, Stop};
+use crate::model::named::named;
 
 /// How far a bound may be passed in the ratio test, usually and where the solution is close.
 pub(super) const HARRIS: f64 = 1e-9;
@@ -60,34 +61,21 @@ pub(super) struct Start {
     pub(super) tolerance: f64,
 }
 
-/// How a path ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum PathEnd {
-    /// t = 1.
-    Solved,
-    /// Nothing blocks: a ray.
-    Ray,
-    /// The path closed on itself.
-    Loop,
-    /// Too many pivots.
-    Limit,
-    /// The starting basis is singular.
-    Singular,
-    /// No acceptable pivot.
-    Numerical,
-}
-
-impl PathEnd {
-    /// One word for the log.
-    pub(super) fn word(self) -> &'static str {
-        match self {
-            PathEnd::Solved => "solved",
-            PathEnd::Ray => "ray",
-            PathEnd::Loop => "loop",
-            PathEnd::Limit => "limit",
-            PathEnd::Singular => "singular",
-            PathEnd::Numerical => "numerical",
-        }
+named! {
+    /// How a path ended.
+    pub(super) enum PathEnd {
+        /// t = 1.
+        Solved "solved";
+        /// Nothing blocks: a ray.
+        Ray "ray";
+        /// The path closed on itself.
+        Loop "loop";
+        /// Too many pivots.
+        Limit "limit";
+        /// The starting basis is singular.
+        Singular "singular";
+        /// No acceptable pivot.
+        Numerical "numerical";
     }
 }
 

@@ -37,6 +37,7 @@ use super::{
     Budget, Claim, ModelStatus, Outcome, Settings, SolveError, SolverStatus, Stop, Strategy,
 };
 use crate::model::instance::Instance;
+use crate::model::named::named;
 use crate::model::outcome::Basis;
 use crate::model::problem_type::ProblemType;
 use pairs::{Judged, Piece, Program};
@@ -46,25 +47,15 @@ use stationarity::Verdict;
 use std::collections::HashSet;
 use std::sync::Arc;
 
-/// What is known about stationarity, for the report.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Stationarity {
-    /// B-stationary.
-    Proved,
-    /// Not B-stationary, and no way down was found.
-    Refuted,
-    /// Not known.
-    NotProved,
-}
-
-impl Stationarity {
-    /// For people and for JSON.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Proved => "proved",
-            Self::Refuted => "refuted",
-            Self::NotProved => "not proved",
-        }
+named! {
+    /// What is known about stationarity, for the report.
+    pub enum Stationarity {
+        /// B-stationary.
+        Proved "proved";
+        /// Not B-stationary, and no way down was found.
+        Refuted "refuted";
+        /// Not known.
+        NotProved "not proved";
     }
 }
 

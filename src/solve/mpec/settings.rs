@@ -1,19 +1,21 @@
 //! Options of the solver for programs with equilibrium constraints.
 
+use crate::model::named::named;
 use crate::model::option::{Kind, OptionTable, row};
 use crate::solve::Settings;
 
-/// Which way to go.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Method {
-    /// `pieces` where it applies, otherwise `relaxation`.
-    Auto,
-    /// A sequence of relaxed nonlinear programs.
-    Relaxation,
-    /// Linear programs on the pieces; for linear programs only.
-    Pieces,
-    /// None: the start point is judged, and solved on its own branch at most.
-    Check,
+named! {
+    /// Which way to go.
+    pub enum Method {
+        /// `pieces` where it applies, otherwise `relaxation`.
+        Auto "auto";
+        /// A sequence of relaxed nonlinear programs.
+        Relaxation "relaxation";
+        /// Linear programs on the pieces; for linear programs only.
+        Pieces "pieces";
+        /// None: the start point is judged, and solved on its own branch at most.
+        Check "check";
+    }
 }
 
 /// How long to look for a lower bound.
@@ -54,12 +56,7 @@ impl Options {
         let word = |name| asked.option(name).unwrap_or_default();
         let number = |name| asked.number_of(&OPTIONS, name);
         Self {
-            method: match word("mpec_method").as_str() {
-                "" | "auto" => Method::Auto,
-                "relaxation" => Method::Relaxation,
-                "pieces" => Method::Pieces,
-                _ => Method::Check,
-            },
+            method: Method::named(&word("mpec_method")).unwrap_or(Method::Auto),
             mu: asked.number("mpec_mu"),
             factor: asked.number("mpec_factor"),
             last: number("mpec_mu_end"),

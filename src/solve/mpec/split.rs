@@ -235,7 +235,7 @@ impl Side {
             .for_each(|(k, &j)| column_at[j] = k);
         rows.iter().enumerate().for_each(|(k, &i)| row_at[i] = k);
         // Fixed columns of the other side are constants here.
-        let whole = whole(program);
+        let whole = Problem::of(instance);
         let problem = whole.part(&columns, &rows, &whole.lower);
         // F is the activity minus this, which stands in the row's bounds where they are finite.
         let has_row: Vec<bool> = program
@@ -269,28 +269,6 @@ const TRUSTED: usize = 30;
 fn engine(problem: &Problem) -> Simplex {
     let mut out = Simplex::new(problem);
     out.trusted = TRUSTED;
-    out
-}
-
-/// The whole envelope of a linear program, rows and columns in their order.
-pub fn whole(program: &Program) -> Problem {
-    let instance = &program.envelope;
-    let mut out = Problem {
-        cost: vec![0.0; instance.column_count()],
-        lower: instance.columns.lower.clone(),
-        upper: instance.columns.upper.clone(),
-        ..Problem::default()
-    };
-    if let Some(o) = instance.objective {
-        out.cost[o.column as usize] = program.sign();
-    }
-    for (i, &rhs) in instance.rows.rhs.iter().enumerate() {
-        let [lo, hi] = instance.rows.relation[i].bounds(rhs);
-        out.row_lower.push(lo);
-        out.row_upper.push(hi);
-        out.rows.push(instance.matrix.row(i));
-    }
-    out.columns = out.rows.transpose(out.n());
     out
 }
 

@@ -219,14 +219,11 @@ impl Part {
 /// The linearised program in d, the biactive pairs, and which pairs of the program they are.
 fn linearise(program: &Program, level: &[f64]) -> Option<(Problem, Vec<Pair>, Vec<usize>)> {
     let instance = program.instance;
-    let (m, n) = (instance.row_count(), instance.column_count());
+    let n = instance.column_count();
     let activity = program.activity(level);
-    let mut evaluator = Evaluator::first_order(instance);
-    let (start, column) = evaluator.jacobian_pattern();
-    let (start, column) = (start.to_vec(), column.to_vec());
-    let mut value = vec![0.0; column.len()];
-    evaluator.jacobian(level, &mut value).ok()?;
-    if value.iter().chain(&activity).any(|v| !v.is_finite()) {
+    let slopes = Evaluator::first_order(instance).jacobian_rows(level).ok()?;
+    let values = slopes.iter().flatten().map(|(_, v)| v);
+    if values.chain(&activity).any(|v| !v.is_finite()) {
         return None;
     }
     let inf = f64::INFINITY;
@@ -250,10 +247,7 @@ fn linearise(program: &Program, level: &[f64]) -> Option<(Problem, Vec<Pair>, Ve
     if let Some(z) = objective {
         p.cost[z] = program.sign();
     }
-    for i in 0..m {
-        let range = start[i]..start[i + 1];
-        let entries = range.map(|k| (column[k] as usize, value[k]));
-        let mut entries: Vec<(usize, f64)> = entries.collect();
+    for (i, mut entries) in slopes.into_iter().enumerate() {
         entries.sort_unstable_by_key(|e| e.0);
         p.rows.push(entries);
         let b = instance.rows.rhs[i];

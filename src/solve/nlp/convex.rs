@@ -126,19 +126,11 @@ pub fn hessian(
 fn at_origin(p: &Instance, e: &mut Evaluator, row: usize, z: usize) -> Option<Objective> {
     let n = p.column_count();
     let x = vec![0.0; n];
-    let mut activity = vec![0.0; p.row_count()];
-    e.rows(&x, &mut activity).ok()?;
-    let (start, column) = e.jacobian_pattern();
-    let (range, column) = (start[row]..start[row + 1], column.to_vec());
-    let mut values = vec![0.0; column.len()];
-    e.jacobian(&x, &mut values).ok()?;
-    let a = range
-        .clone()
-        .find(|&k| column[k] as usize == z)
-        .map(|k| values[k])?;
+    let (activity, slopes) = e.linearised(&x).ok()?;
+    let (_, a) = *slopes[row].iter().find(|s| s.0 == z)?;
     let mut gradient = vec![0.0; n];
-    for k in range.filter(|&k| column[k] as usize != z) {
-        gradient[column[k] as usize] = -values[k] / a;
+    for &(j, slope) in slopes[row].iter().filter(|s| s.0 != z) {
+        gradient[j] = -slope / a;
     }
     Some(Objective {
         row,

@@ -24,14 +24,9 @@ pub(super) fn findings(instance: &Instance, square: bool, x: &[f64]) -> Vec<Find
     let Ok(row_of) = match_rows(instance, square) else {
         return Vec::new();
     };
-    let mut evaluator = Evaluator::first_order(instance);
-    let mut activity = vec![0.0; instance.row_count()];
-    let (start, column) = evaluator.jacobian_pattern();
-    let (start, column) = (start.to_vec(), column.to_vec());
-    let mut values = vec![0.0; column.len()];
-    if evaluator.rows(x, &mut activity).is_err() || evaluator.jacobian(x, &mut values).is_err() {
+    let Ok((activity, slopes)) = Evaluator::first_order(instance).linearised(x) else {
         return Vec::new();
-    }
+    };
     let n = instance.column_count();
     let mut out = Vec::new();
     let mut worst = Vec::new();
@@ -62,7 +57,7 @@ pub(super) fn findings(instance: &Instance, square: bool, x: &[f64]) -> Vec<Find
     }
     let mut lines = Sparse::default();
     for &(i, _) in &open {
-        let entries = (start[i]..start[i + 1]).map(|k| (place[column[k] as usize], values[k]));
+        let entries = slopes[i].iter().map(|&(j, v)| (place[j], v));
         lines.push(entries.filter(|e| e.0 != usize::MAX && e.1 != 0.0));
     }
     let all: Vec<usize> = (0..open.len()).collect();
@@ -93,11 +88,11 @@ pub(super) fn findings(instance: &Instance, square: bool, x: &[f64]) -> Vec<Find
         };
         let (l, u) = (instance.columns.lower[j], instance.columns.upper[j]);
         let bounded = l.is_finite() || u.is_finite();
-        let own = (start[i]..start[i + 1]).find(|&k| column[k] as usize == j);
-        if let (true, Some(k)) = (bounded && l < u && !square, own)
-            && values[k] < 0.0
+        let own = slopes[i].iter().find(|e| e.0 == j);
+        if let (true, Some(&(_, slope))) = (bounded && l < u && !square, own)
+            && slope < 0.0
         {
-            wrong.push((i, j, values[k]));
+            wrong.push((i, j, slope));
         }
     }
     let wrong = largest(&wrong, |w| -w.2);

@@ -39,19 +39,14 @@ pub(super) fn ray(instance: &Instance, ray: &[f64]) -> Option<Finding> {
 
 /// Coefficients (derivatives, at the point) that are more than [`WIDE`] apart.
 pub(super) fn scaling(instance: &Instance, x: &[f64]) -> Option<Finding> {
-    let mut evaluator = Evaluator::first_order(instance);
-    let (start, column) = evaluator.jacobian_pattern();
-    let (start, column) = (start.to_vec(), column.to_vec());
-    let mut values = vec![0.0; column.len()];
-    evaluator.jacobian(x, &mut values).ok()?;
+    let slopes = Evaluator::first_order(instance).jacobian_rows(x).ok()?;
     let (m, n) = (instance.row_count(), instance.column_count());
     let mut rows = vec![(f64::INFINITY, 0.0f64); m];
     let mut columns = vec![(f64::INFINITY, 0.0f64); n];
     let mut high = (0, 0, 0.0f64);
     let mut low = (0, 0, f64::INFINITY);
-    for i in 0..m {
-        for k in start[i]..start[i + 1] {
-            let (j, v) = (column[k] as usize, values[k]);
+    for (i, row) in slopes.into_iter().enumerate() {
+        for (j, v) in row {
             let a = v.abs();
             if a == 0.0 || !a.is_finite() {
                 continue;
@@ -143,13 +138,7 @@ pub(super) fn inaccurate(instance: &Instance, answer: &Answer) -> Option<Finding
 
 /// Whether some function has no value or derivative at the point.
 pub(super) fn no_value(instance: &Instance, x: &[f64]) -> Option<Finding> {
-    let mut evaluator = Evaluator::first_order(instance);
-    let mut rows = vec![0.0; instance.row_count()];
-    let mut values = vec![0.0; evaluator.jacobian_pattern().1.len()];
-    let failure = evaluator
-        .rows(x, &mut rows)
-        .and_then(|()| evaluator.jacobian(x, &mut values))
-        .err()?;
+    let failure = Evaluator::first_order(instance).linearised(x).err()?;
     Some(Finding::NoValue {
         row: failure.row as usize,
         column: failure.column.map(|c| c as usize),

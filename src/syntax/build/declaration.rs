@@ -49,7 +49,9 @@ impl Builder<'_> {
                 let mut list = Vec::new();
                 for p in parts(pair) {
                     match p.as_rule() {
-                        Rule::variable_kind => kind = variable_kind(p.as_str()),
+                        Rule::variable_kind => {
+                            kind = VariableKind::named(p.as_str()).unwrap_or(kind)
+                        }
                         _ => list.push(self.declaration(p)?),
                     }
                 }
@@ -80,7 +82,9 @@ impl Builder<'_> {
                     match p.as_rule() {
                         Rule::set_word => of = TableOf::Set,
                         Rule::parameter_word => {}
-                        Rule::variable_kind => kind = variable_kind(p.as_str()),
+                        Rule::variable_kind => {
+                            kind = VariableKind::named(p.as_str()).unwrap_or(kind)
+                        }
                         Rule::variable_word => of = TableOf::Variable(kind),
                         _ => symbols.push(self.declaration(p)?),
                     }
@@ -257,19 +261,5 @@ impl Builder<'_> {
             }
         }
         Ok(names)
-    }
-}
-
-fn variable_kind(word: &str) -> VariableKind {
-    match word.to_ascii_lowercase().as_str() {
-        "positive" | "nonnegative" => VariableKind::Positive,
-        "negative" => VariableKind::Negative,
-        "binary" => VariableKind::Binary,
-        "integer" => VariableKind::Integer,
-        "semicont" => VariableKind::SemiContinuous,
-        "semiint" => VariableKind::SemiInteger,
-        "sos1" => VariableKind::Sos1,
-        "sos2" => VariableKind::Sos2,
-        _ => VariableKind::Free,
     }
 }

@@ -36,40 +36,6 @@ fn level(op: Op) -> u8 {
 
 const RELATION: u8 = 5;
 
-fn infix(text: &str) -> BinaryOp {
-    use BinaryOp as B;
-    match text {
-        "+" => B::Add,
-        "-" => B::Subtract,
-        "*" => B::Multiply,
-        "/" => B::Divide,
-        "**" => B::Power,
-        "++" => B::CircularPlus,
-        "--" => B::CircularMinus,
-        "=" => B::Eq,
-        "<>" => B::Ne,
-        "<" => B::Lt,
-        "<=" => B::Le,
-        ">" => B::Gt,
-        ">=" => B::Ge,
-        "->" => B::Implies,
-        "<=>" => B::Equivalent,
-        word => match word.to_ascii_lowercase().as_str() {
-            "and" => B::And,
-            "or" => B::Or,
-            "xor" => B::Xor,
-            "imp" => B::Implies,
-            "eqv" => B::Equivalent,
-            "eq" => B::Eq,
-            "ne" => B::Ne,
-            "lt" => B::Lt,
-            "le" => B::Le,
-            "gt" => B::Gt,
-            _ => B::Ge,
-        },
-    }
-}
-
 /// An expression on the way, with its depth.
 struct Node {
     expr: Expr,
@@ -210,7 +176,7 @@ impl Builder<'_> {
                     after_prefix = Some(op);
                 }
                 Rule::infix => {
-                    let op = infix(pair.as_str());
+                    let op = BinaryOp::named(pair.as_str()).unwrap_or(BinaryOp::Ge);
                     let at = self.span(&pair);
                     let new = level(Op::Infix(op));
                     while s.ops.last().is_some_and(|(top, _)| level(*top) > new) {
@@ -333,16 +299,7 @@ impl Builder<'_> {
         let (mut op, mut domain, mut body) = (AggregateOp::Sum, None, None);
         for p in pair.into_inner() {
             match p.as_rule() {
-                Rule::aggregate_op => {
-                    op = match p.as_str().to_ascii_lowercase().as_str() {
-                        "prod" => AggregateOp::Prod,
-                        "smin" => AggregateOp::Smin,
-                        "smax" => AggregateOp::Smax,
-                        "sand" => AggregateOp::Sand,
-                        "sor" => AggregateOp::Sor,
-                        _ => AggregateOp::Sum,
-                    }
-                }
+                Rule::aggregate_op => op = AggregateOp::named(p.as_str()).unwrap_or(op),
                 Rule::domain => domain = Some(self.domain(p)?),
                 _ => body = Some(self.chain(p)?),
             }

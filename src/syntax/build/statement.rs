@@ -183,11 +183,10 @@ impl Builder<'_> {
                 .help(help)
                 .refuse()
         };
+        if let Some(relation) = Relation::named(pair.as_str()) {
+            return Ok(relation);
+        }
         match pair.as_str().as_bytes()[1].to_ascii_lowercase() {
-            b'e' => Ok(Relation::Equal),
-            b'g' => Ok(Relation::Greater),
-            b'l' => Ok(Relation::Less),
-            b'n' => Ok(Relation::Free),
             b'x' => refused(
                 "`=x=` equations call functions of an external program, which is refused",
                 "write the function in the language",

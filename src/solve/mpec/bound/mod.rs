@@ -13,7 +13,7 @@ pub(crate) mod weak;
 
 use super::pairs::Program;
 use super::settings::Bound;
-use super::split::{shifts, whole};
+use super::split::shifts;
 use super::tree::{self, Lpcc, Prover};
 use crate::solve::Budget;
 use crate::solve::lp::form::Problem;
@@ -86,7 +86,7 @@ fn prove(program: &Program, level: &[f64], wanted: Bound, budget: &Budget) -> Pr
     // The best point is to be well inside.
     let cutoff = best + GAP * unit;
     let mut products = Products { budget };
-    let mut problem = whole(program);
+    let mut problem = Problem::of(&program.envelope);
     let low = products.bound(program, &mut problem, best + ROOM * unit, level, limits);
     if is_closed(low, best) {
         proof.value = Some(low);
@@ -149,7 +149,7 @@ pub(crate) fn any(program: &Program, budget: &Budget) -> Any {
         gap: 0.0,
     };
     let mut watch = watch(budget, u64::MAX);
-    let problem = whole(program);
+    let problem = Problem::of(&program.envelope);
     let found = search(program, &problem, &limits, None, &mut watch);
     if let Some((_, level)) = found.best {
         return Any::Point(level);

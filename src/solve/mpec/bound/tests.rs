@@ -1,13 +1,13 @@
 //! Bounds against the global minimum, which enumeration of all pieces finds.
 
 use super::super::pairs::{Piece, Program};
-use super::super::split::whole;
 use super::products::{Limits, Products};
 use crate::model::instance::{INF, Instance, Relation, Sense};
 use crate::model::problem_type::ProblemType;
 use crate::solve::answer::{Answer, subproblem};
 use crate::solve::backend::Task;
 use crate::solve::dense::{self, Row};
+use crate::solve::lp::form::Problem;
 use crate::solve::{Budget, ModelStatus, Quiet, Settings};
 
 /// Small whole numbers from a fixed seed.
@@ -210,7 +210,13 @@ fn products_alone_are_below_the_global_minimum() {
             steps: 2_000,
         };
         let cutoff = truth + 0.1 * truth.abs().max(1.0);
-        let low = products.bound(&program, &mut whole(&program), cutoff, &level, limits);
+        let low = products.bound(
+            &program,
+            &mut Problem::of(&program.envelope),
+            cutoff,
+            &level,
+            limits,
+        );
         assert!(
             low <= truth + 1e-9 * truth.abs().max(1.0),
             "{k}: {low} > {truth}"
