@@ -17,6 +17,11 @@ pub enum Callee {
     Math(Function),
     /// Of data only.
     Data(DataFunction),
+    /// `stolib.cdfnormal` and, of the density, `stolib.pdfnormal`: value, mean, standard deviation.
+    NormalCurve {
+        /// The density.
+        density: bool,
+    },
 }
 
 /// How many of [`FUNCTIONS`] are about sets: the first.
@@ -82,6 +87,31 @@ const FUNCTIONS: &[(&str, Callee, usize, usize)] = {
         ("sleep", Data(D::Sleep), 1, 1),
     ]
 };
+
+/// The functions of the library `stolib` that can be named by `function f /stolib.dnormal/`.
+pub const STOLIB: &[(&str, Callee, usize, usize)] = {
+    use Callee::{Data, NormalCurve};
+    use DataFunction as D;
+    &[
+        ("cdfnormal", NormalCurve { density: false }, 3, 3),
+        ("dbinomial", Data(D::RandBinomial), 2, 2),
+        ("dexponential", Data(D::RandExponential), 1, 1),
+        ("dnormal", Data(D::Normal), 2, 2),
+        ("dpoisson", Data(D::RandPoisson), 1, 1),
+        ("dtriangular", Data(D::RandTriangle), 3, 3),
+        ("duniform", Data(D::Uniform), 2, 2),
+        ("duniformint", Data(D::UniformInt), 2, 2),
+        ("pdfnormal", NormalCurve { density: true }, 3, 3),
+        ("setseed", Data(D::SetSeed), 1, 1),
+    ]
+};
+
+/// `stolib.dnormal`, in lower case.
+pub fn of_library(path: &str) -> Option<(Callee, usize, usize)> {
+    let name = path.strip_prefix("stolib.")?;
+    let row = STOLIB.iter().find(|f| f.0 == name);
+    row.map(|f| (f.1, f.2, f.3))
+}
 
 /// The function of this name (lower case), with least and greatest number of arguments.
 pub fn callee(name: &str) -> Option<(Callee, usize, usize)> {
