@@ -108,14 +108,12 @@ fn second_derivatives(evaluator: &Evaluator, variable: &[u32]) -> Pattern {
     out
 }
 
-/// Columns that are by themselves the base of `**`, or what a root or a logarithm is taken of: where they are negative nothing can be
-/// evaluated.
+/// Columns that are by themselves the base of `**` or under a root: where they are negative nothing can be evaluated.
 fn never_negative(instance: &Instance) -> impl Iterator<Item = u32> {
-    use Function::{Log, Log2, Log10, Sqrt};
     instance.nonlinear.iter().flat_map(|terms| {
         let ops = &terms.kernel.ops;
         let slots = (0..ops.len()).filter_map(|i| match ops[i..] {
-            [Op::Var(k), Op::Call(Log | Log2 | Log10 | Sqrt, _), ..]
+            [Op::Var(k), Op::Call(Function::Sqrt, _), ..]
             | [Op::Var(k), Op::Const(_), Op::Power, ..] => Some(k as usize),
             _ => None,
         });
@@ -217,12 +215,6 @@ impl Problem {
         };
         let (row_lower, row_upper) = rows.iter().map(sides).unzip();
         let (mut lower, upper) = (pick(&columns.lower), pick(&columns.upper));
-        for j in never_negative(instance) {
-            let v = variable[j as usize] as usize;
-            if upper.get(v).is_some_and(|u| *u > 0.0) {
-                lower[v] = lower[v].max(0.0);
-            }
-        }
         let levels = pick(&columns.level);
         let form = match (form, instance.objective) {
             (ObjectiveForm::Variable { .. }, Some(o)) => match variable[o.column as usize] {
@@ -244,6 +236,12 @@ impl Problem {
                 }
             })
             .collect();
+        for j in never_negative(instance) {
+            let v = variable[j as usize] as usize;
+            if upper.get(v).is_some_and(|u| *u > 0.0) {
+                lower[v] = lower[v].max(0.0);
+            }
+        }
         let derivative = vec![0.0; evaluator.jacobian_pattern().1.len()];
         let second = vec![0.0; evaluator.hessian_pattern().0.len()];
         Self {

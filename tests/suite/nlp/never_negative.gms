@@ -1,4 +1,4 @@
-* What stands under `**`, a root or a logarithm cannot be negative: the search need not be told by a bound
+* bmod only: what stands under `**` or a root cannot be negative: the search need not be told by a bound
 $set n 100
 set k / 0*%n% /;
 scalar h; h = 3.6 / (%n%+1);
