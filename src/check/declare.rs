@@ -2,7 +2,7 @@
 
 use super::node::{SymbolId, TableId};
 use super::symbols::{DomainPosition, ModelInfo, Symbol, SymbolKind, UNIVERSE, attribute};
-use super::{Checked, Compiler, Failed};
+use super::{Checked, Compiler, Failed, functions};
 use crate::diag::Diagnostic;
 use crate::source::{SourceMap, Span};
 use crate::syntax::ast::{
@@ -572,6 +572,22 @@ impl Compiler {
             let n = self.store.acronyms.len() as u32;
             self.store.acronyms.push(d.name.name.clone());
             let _ = self.declare_plain(&d.name, SymbolKind::Acronym(n), d.text.as_deref());
+        }
+        Ok(())
+    }
+
+    /// `function f /stolib.dnormal/;`
+    pub(super) fn declare_functions(&mut self, list: &[FileDecl]) -> Checked<()> {
+        for f in list {
+            let path = f.path.as_deref().unwrap_or_default().to_lowercase();
+            let Some(found) = functions::of_library(&path) else {
+                let known: Vec<_> = functions::names_in_library().collect();
+                return Diagnostic::error("E0301", f.name.span)
+                    .says(format!("the library function `{path}` is not in bmod"))
+                    .help(format!("there are, of `stolib`: {}", known.join(", ")))
+                    .fail(self);
+            };
+            self.library.insert(f.name.name.to_lowercase(), found);
         }
         Ok(())
     }

@@ -8,7 +8,7 @@ use crate::data::value;
 use crate::diag::{Diagnostic, nearest};
 use crate::model::instance::Function;
 use crate::source::Span;
-use crate::syntax::ast::{Expr, ExprKind, Factor, Ident, Sign, UnaryOp};
+use crate::syntax::ast::{BinaryOp, Expr, ExprKind, Factor, Ident, Sign, UnaryOp};
 
 /// Builds a node of children: whether variables stand in it, and whether it is linear if they do.
 fn combine(kind: NodeKind, span: Span, has_var: bool, linear: bool) -> Node {
@@ -598,7 +598,9 @@ impl Compiler {
     ) -> Checked<Node> {
         let lower = name.name.to_lowercase();
         let args = arguments.unwrap_or(&[]);
-        let Some((callee, low, high)) = functions::callee(&lower).filter(|_| attr.is_none()) else {
+        let known = self.library.get(&lower).copied();
+        let known = known.or_else(|| functions::callee(&lower));
+        let Some((callee, low, high)) = known.filter(|_| attr.is_none()) else {
             return self.unknown_name(name, arguments);
         };
         if args.len() < low || args.len() > high {
@@ -635,6 +637,7 @@ impl Compiler {
                 }
                 Ok(combine(NodeKind::Call(f, nodes), span, v, false))
             }
+            Callee::NormalCurve { density } => self.normal_curve(density, args, span),
             // Its argument is a symbol without its indices.
             Callee::Data(DataFunction::ReadyCollect) => Ok(Node::number(0.0, span)),
             Callee::Data(f) => {
@@ -652,6 +655,25 @@ impl Compiler {
                 Ok(Node::data(NodeKind::DataCall(f, nodes), span))
             }
         }
+    }
+
+    /// The normal distribution at `x, mean, deviation`: Φ(z), or its density exp(−z²/2)/(√2π·deviation).
+    fn normal_curve(&mut self, density: bool, args: &[Expr], span: Span) -> Checked<Node> {
+        let e = |kind| Expr { kind, span };
+        let call = |name: &str, of| {
+            let name = name.into();
+            e(ExprKind::Apply(Ident { name, span }, None, Some(vec![of])))
+        };
+        let binary = |op, a, b| e(ExprKind::Binary(op, Box::new(a), Box::new(b)));
+        let over = |a, b| binary(BinaryOp::Divide, a, b);
+        let less = binary(BinaryOp::Subtract, args[0].clone(), args[1].clone());
+        let z = over(less, args[2].clone());
+        if !density {
+            return self.expr(&call("errorf", z));
+        }
+        let half = over(call("sqr", z), e(ExprKind::Number(-2.0)));
+        let scale = e(ExprKind::Number((2.0 * std::f64::consts::PI).sqrt()));
+        self.expr(&over(over(call("exp", half), scale), args[2].clone()))
     }
 
     /// `ord(i)`, `card(s)`, and both of a text.

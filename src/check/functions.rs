@@ -18,6 +18,11 @@ pub enum Callee {
     Math(Function),
     /// Of data only.
     Data(DataFunction),
+    /// `stolib.cdfnormal` and, of the density, `stolib.pdfnormal`: value, mean, standard deviation.
+    NormalCurve {
+        /// The density.
+        density: bool,
+    },
 }
 
 /// Functions of sets: name, meaning, least and greatest number of arguments.
@@ -27,6 +32,30 @@ const OF_SETS: [(&str, Callee, usize, usize); 4] = [
     ("sameas", Callee::SameAs, 2, 2),
     ("diag", Callee::SameAs, 2, 2),
 ];
+
+/// The normal curve in the library `stolib`; what else it has are functions of data with another name.
+const NORMAL_CURVE: [(&str, bool); 2] = [("stolib.cdfnormal", false), ("stolib.pdfnormal", true)];
+
+const LIBRARY: &str = "stolib.";
+
+/// The functions that can be named by `function f /stolib.dnormal/`, without the library.
+pub fn names_in_library() -> impl Iterator<Item = &'static str> {
+    let curve = NORMAL_CURVE.iter().map(|f| f.0);
+    let all = curve.chain(names_of_data());
+    all.filter_map(|name| name.strip_prefix(LIBRARY))
+}
+
+/// `stolib.dnormal`, in lower case.
+pub fn of_library(path: &str) -> Option<(Callee, usize, usize)> {
+    if let Some(&(_, density)) = NORMAL_CURVE.iter().find(|f| f.0 == path) {
+        return Some((Callee::NormalCurve { density }, 3, 3));
+    }
+    path.starts_with(LIBRARY).then(|| callee(path)).flatten()
+}
+
+fn names_of_data() -> impl Iterator<Item = &'static str> {
+    DataFunction::ALL.iter().flat_map(|f| f.names()).copied()
+}
 
 /// The function of this name, with least and greatest number of arguments.
 pub fn callee(name: &str) -> Option<(Callee, usize, usize)> {
@@ -50,7 +79,7 @@ pub fn callee(name: &str) -> Option<(Callee, usize, usize)> {
 /// All function names.
 pub fn names() -> impl Iterator<Item = &'static str> {
     let math = Function::ALL.iter().map(|f| f.name());
-    let of_data = DataFunction::ALL.iter().flat_map(|f| f.names()).copied();
+    let of_data = names_of_data().filter(|name| !name.starts_with(LIBRARY));
     OF_SETS.iter().map(|f| f.0).chain(math).chain(of_data)
 }
 

@@ -108,6 +108,8 @@ pub(crate) struct Compiler {
     maps: Vec<usize>,
     /// Symbols declared with `<` behind an index: their data define those sets.
     defining: rustc_hash::FxHashMap<SymbolId, Vec<bool>>,
+    /// What `function f /stolib.dnormal/` named, in lower case.
+    library: rustc_hash::FxHashMap<String, (Callee, usize, usize)>,
     /// The file that `$gdxIn` named.
     input: Option<(String, Span)>,
     /// The file that `$gdxOut` named, and what `$unload` asked for.

@@ -198,12 +198,15 @@ named! {
 functions! {
     /// Functions that never take a variable.
     pub enum DataFunction {
-        Uniform "uniform", 2, 2;
-        UniformInt "uniformint", 2, 2;
-        Normal "normal", 2, 2;
-        RandBinomial "randbinomial", 2, 2;
+        Uniform "uniform" | "stolib.duniform", 2, 2;
+        UniformInt "uniformint" | "stolib.duniformint", 2, 2;
+        Normal "normal" | "stolib.dnormal", 2, 2;
+        RandBinomial "randbinomial" | "stolib.dbinomial", 2, 2;
         RandLinear "randlinear", 3, 3;
-        RandTriangle "randtriangle", 3, 3;
+        RandTriangle "randtriangle" | "stolib.dtriangular", 3, 3;
+        RandExponential "stolib.dexponential", 1, 1;
+        RandPoisson "stolib.dpoisson", 1, 1;
+        SetSeed "stolib.setseed", 1, 1;
         Fact "fact", 1, 1;
         Mapval "mapval", 1, 1;
         Pi "pi", 0, 0;

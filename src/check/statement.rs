@@ -65,6 +65,7 @@ impl Compiler {
             StmtKind::Model(list) => return self.declare_models(list),
             StmtKind::Acronym(list) => return self.declare_acronyms(list),
             StmtKind::File(list) => return self.declare_files(list),
+            StmtKind::Function(list) => return self.declare_functions(list),
             StmtKind::Figure(f) => return self.declare_figure(f),
             StmtKind::Clear { kill, names } => return self.forget(*kill, names),
             StmtKind::Empty => return Ok(()),
@@ -209,6 +210,7 @@ impl Compiler {
             | StmtKind::Model(_)
             | StmtKind::Acronym(_)
             | StmtKind::File(_)
+            | StmtKind::Function(_)
             | StmtKind::Figure(_) => "declaration",
             StmtKind::Equate(_) => "definition of an equation",
             _ => return Ok(()),

@@ -318,6 +318,9 @@ impl DataFunction {
                 | D::RandBinomial
                 | D::RandLinear
                 | D::RandTriangle
+                | D::RandExponential
+                | D::RandPoisson
+                | D::SetSeed
                 | D::ExecSeed
         )
     }

@@ -223,7 +223,9 @@ impl<'a> Lowering<'a> {
                 | DataFunction::Normal
                 | DataFunction::RandBinomial
                 | DataFunction::RandLinear
-                | DataFunction::RandTriangle => Expr::Opaque("a random number"),
+                | DataFunction::RandTriangle
+                | DataFunction::RandExponential
+                | DataFunction::RandPoisson => Expr::Opaque("a random number"),
                 _ => Expr::Opaque("a function of the clock or of the run"),
             },
             NodeKind::Dollar(a, c) => {

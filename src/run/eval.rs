@@ -503,6 +503,12 @@ impl Machine<'_> {
             D::RandBinomial => random.binomial(a[0], a[1]),
             D::RandLinear => random.linear(a[0], a[1], a[2]),
             D::RandTriangle => random.triangle(a[0], a[1], a[2]),
+            D::RandExponential => random.exponential(a[0]),
+            D::RandPoisson => random.poisson(a[0]),
+            D::SetSeed => {
+                *random = random::Random::new(a[0] as i64);
+                0.0
+            }
             D::ExecSeed => random.take_seed(),
             D::Fact => {
                 if a[0] < 0.0 || a[0].fract() != 0.0 {

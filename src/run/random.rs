@@ -134,6 +134,21 @@ impl Random {
         }
     }
 
+    /// Exponential with a rate, by inversion.
+    pub fn exponential(&mut self, rate: f64) -> f64 {
+        -(1.0 - self.unit()).ln() / rate
+    }
+
+    /// Poisson with a mean: how many exponential waits fit into it.
+    pub fn poisson(&mut self, mean: f64) -> f64 {
+        let (mut count, mut time) = (0.0, self.exponential(1.0));
+        while time < mean {
+            count += 1.0;
+            time += self.exponential(1.0);
+        }
+        count
+    }
+
     /// Number of successes in `n` trials. As in GAMS by one number: from the most probable count down to 0, then up.
     pub fn binomial(&mut self, n: f64, p: f64) -> f64 {
         if p.min(1.0 - p) <= 1e-4 {
@@ -190,6 +205,10 @@ pub(super) fn valid(f: DataFunction, a: &[f64]) -> Result<(), &'static str> {
         ),
         (D::RandTriangle, [low, mid, high]) if !(low <= mid && mid <= high) => {
             Err("the mode must be between the ends of the interval")
+        }
+        (D::RandExponential, [rate]) if *rate <= 0.0 => Err("the rate must be positive"),
+        (D::RandPoisson, [mean]) if !(0.0..1e9).contains(mean) => {
+            Err("the mean must be between 0 and 1e9")
         }
         (D::RandLinear, [low, slope, high]) if low > high || slope.abs() * (high - low) > 2.0 => {
             Err(

@@ -56,6 +56,8 @@ pub enum StmtKind {
     Acronym(Vec<SymbolDecl>),
     /// `file f 'text' / out.txt /;` the name of the file is None where none is given.
     File(Vec<FileDecl>),
+    /// `function f /stolib.dnormal/`: names for functions of a library.
+    Function(Vec<FileDecl>),
     /// `p(i)$c = e;` also to attributes and sets.
     Assign(Assign),
     /// `e(i)$c .. l =e= r;`

@@ -111,7 +111,7 @@ fn kind(word: &[u8]) -> Option<(Word, Class)> {
         b"variable" | b"variables" => (W::Declaration, C::Variable),
         b"equation" | b"equations" => (W::Declaration, C::Equation),
         b"acronym" | b"acronyms" => (W::Declaration, C::Acronym),
-        b"file" | b"files" => (W::Declaration, C::File),
+        b"file" | b"files" | b"function" | b"functions" => (W::Declaration, C::File),
         b"model" | b"models" => (W::Declaration, C::Model),
         b"table" | b"tables" => (W::Declaration, C::Table),
         b"alias" | b"aliases" => (W::Declaration, C::Alias),
@@ -149,6 +149,20 @@ fn has_attribute(text: &str, end: usize) -> bool {
     text[end..].trim_start().starts_with('.')
 }
 
+/// Whether a word that [`kind`] knows is a name here: `file.nd = 3`, and `function` where no list like
+/// `f /stolib.dnormal/` follows.
+fn is_name(word: &[u8], text: &str, end: usize) -> bool {
+    if word == b"file" {
+        return has_attribute(text, end);
+    }
+    let list = || text[end..].split(';').next()?.split_once('/');
+    let library = |(_, t): (&str, &str)| {
+        let name = t.trim_start().get(..7);
+        name.is_some_and(|n| n.eq_ignore_ascii_case("stolib."))
+    };
+    matches!(word, b"function" | b"functions") && !list().is_some_and(library)
+}
+
 /// The word after the blanks behind `end`.
 fn next_word(text: &str, end: usize) -> &str {
     let i = behind_blanks(text.as_bytes(), end);
@@ -167,7 +181,7 @@ pub(crate) fn statement_word(text: &str, at: usize, end: usize) -> Option<Word> 
     let mut buffer = [0; 20];
     let n = lower(&text[at..end], &mut buffer)?;
     let word = &buffer[..n];
-    if word == b"file" && has_attribute(text, end) {
+    if is_name(word, text, end) {
         return None;
     }
     if let Some((kind, _)) = kind(word) {
@@ -219,7 +233,7 @@ fn first_class(text: &str, at: usize) -> (Class, usize) {
         return (Class::Algebra, end);
     };
     let word = &buffer[..n];
-    if word == b"file" && has_attribute(text, end) {
+    if is_name(word, text, end) {
         return (Class::Algebra, end);
     }
     if let Some((_, class)) = kind(word) {

@@ -11,7 +11,7 @@
 //! columns, fixed ones too, follow from stationarity: r = e_z − Jᵀm.
 
 use crate::autodiff::{EvalFailure, Evaluator};
-use crate::model::instance::{Instance, Relation};
+use crate::model::instance::{Function, Instance, Op, Relation};
 use crate::solve::backend::Seen;
 use crate::solve::certificate::nonlinear::inside;
 
@@ -108,6 +108,20 @@ fn second_derivatives(evaluator: &Evaluator, variable: &[u32]) -> Pattern {
     out
 }
 
+/// Columns that are by themselves the base of `**` or under a root: where they are negative nothing can be evaluated.
+fn never_negative(instance: &Instance) -> impl Iterator<Item = u32> {
+    instance.nonlinear.iter().flat_map(|terms| {
+        let ops = &terms.kernel.ops;
+        let slots = (0..ops.len()).filter_map(|i| match ops[i..] {
+            [Op::Var(k), Op::Call(Function::Sqrt, _), ..]
+            | [Op::Var(k), Op::Const(_), Op::Power, ..] => Some(k as usize),
+            _ => None,
+        });
+        let width = terms.kernel.variables as usize;
+        slots.flat_map(move |k| terms.columns.iter().skip(k).step_by(width).copied())
+    })
+}
+
 /// An instance in the form that solvers take.
 pub struct Problem {
     /// Of the whole instance.
@@ -200,7 +214,7 @@ impl Problem {
             (l, u)
         };
         let (row_lower, row_upper) = rows.iter().map(sides).unzip();
-        let (lower, upper) = (pick(&columns.lower), pick(&columns.upper));
+        let (mut lower, upper) = (pick(&columns.lower), pick(&columns.upper));
         let levels = pick(&columns.level);
         let form = match (form, instance.objective) {
             (ObjectiveForm::Variable { .. }, Some(o)) => match variable[o.column as usize] {
@@ -222,6 +236,12 @@ impl Problem {
                 }
             })
             .collect();
+        for j in never_negative(instance) {
+            let v = variable[j as usize] as usize;
+            if upper.get(v).is_some_and(|u| *u > 0.0) {
+                lower[v] = lower[v].max(0.0);
+            }
+        }
         let derivative = vec![0.0; evaluator.jacobian_pattern().1.len()];
         let second = vec![0.0; evaluator.hessian_pattern().0.len()];
         Self {

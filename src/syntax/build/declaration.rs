@@ -61,6 +61,7 @@ impl Builder<'_> {
             Rule::acronym_statement => Ok(StmtKind::Acronym(self.declarations(pair)?)),
             Rule::file_statement => {
                 let mut list = Vec::new();
+                let function = pair.as_str().as_bytes()[1].eq_ignore_ascii_case(&b'u');
                 for p in parts(pair) {
                     let d = self.declaration(p)?;
                     let path = d.data.map(|s| {
@@ -73,7 +74,11 @@ impl Builder<'_> {
                         path,
                     });
                 }
-                Ok(StmtKind::File(list))
+                Ok(if function {
+                    StmtKind::Function(list)
+                } else {
+                    StmtKind::File(list)
+                })
             }
             Rule::table_statement => {
                 let (mut of, mut kind) = (TableOf::Parameter, VariableKind::Unstated);
