@@ -581,8 +581,8 @@ fn auto(p: &Problem, accuracy: Accuracy, strategies: Strategies, budget: &Budget
     concluded(simplex, ended, accuracy, budget)
 }
 
-/// Interior point, then a basis from it, then the simplex method. Clarabel's point comes second: where the first is none, as in
-/// programs without a solution.
+/// Interior point, then a basis from it, then the simplex method. Clarabel's point comes second: where none of the first leads to a
+/// vertex, as in ill-conditioned programs and those without a solution.
 fn finished(
     p: &Problem,
     layout: Option<barrier::Layout>,
@@ -597,14 +597,18 @@ fn finished(
     let mut first = given(barrier::solve(p, None, layout, goal, budget));
     if first.ended != Ended::Failed {
         let (done, over) = finished_from(p, first, u64::MAX, accuracy, strategies, budget);
-        if over || done.ended == Ended::Solved {
+        if over {
             return done;
         }
         first = done;
     }
     let mut answer = given(interior::solve(p, None, 1e-10, budget));
     answer.iterations += first.iterations;
-    finished_from(p, answer, u64::MAX, accuracy, strategies, budget).0
+    let (second, _) = finished_from(p, answer, u64::MAX, accuracy, strategies, budget);
+    match (&second.ended, &first.ended) {
+        (Ended::Failed | Ended::TooLarge(_), Ended::Solved) => first,
+        _ => second,
+    }
 }
 
 /// A vertex and its basis, from an interior point, with so many pushes and pivots at most; false: the interior point is all there is.
