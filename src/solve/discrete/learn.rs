@@ -294,10 +294,9 @@ impl Propagator {
     pub fn learn_from_run(&mut self, mip: &Mip, root: [&[f64]; 2]) {
         if self.learns()
             && let Some((row, upper)) = self.contradicted.take()
+            && let Some((terms, side)) = self.row_of(mip, row, upper)
         {
-            if let Some((terms, side)) = self.row_of(mip, row, upper) {
-                self.learn(mip, &terms, side, root);
-            }
+            self.learn(mip, &terms, side, root);
         }
     }
 
