@@ -25,6 +25,7 @@ use crate::solve::{Budget, Progress};
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::ldlt::factor::LdltRegularization;
 use faer::perm::PermRef;
+use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::amd::{self, FlopCount};
 use faer::sparse::linalg::cholesky::simplicial::{
     prefactorize_symbolic_cholesky, prefactorize_symbolic_cholesky_scratch,
@@ -73,6 +74,9 @@ const DENSE: f64 = 10.0;
 /// The system without its short columns may have so many entries for each of the whole one: its factor has longer blocks, and takes half to three quarters of
 /// the time (DFL001 and MAROS-R7 of Netlib, walls).
 const LARGER: usize = 2;
+
+/// A factor with at least so many operations for each entry, in faer's unit, is made in blocks.
+const BLOCKS: SupernodalThreshold = SupernodalThreshold(0.7);
 
 /// The least distance to a bound of a point that is inside.
 const LEAST: f64 = 1e-10;
@@ -449,7 +453,10 @@ impl System {
         (layout.pivots.iter().enumerate()).for_each(|(k, &i)| inverse[i] = k);
         let by = PermRef::new_checked(&layout.pivots, &inverse, order);
         let by = SymmetricOrdering::Custom(by);
-        let params = CholeskySymbolicParams::default();
+        let params = CholeskySymbolicParams {
+            supernodal_flop_ratio_threshold: BLOCKS,
+            ..CholeskySymbolicParams::default()
+        };
         let symbolic = factorize_symbolic_cholesky(pattern, Side::Upper, by, params)
             .map_err(|_| Ended::Failed)?;
         let numeric = symbolic.factorize_numeric_ldlt_scratch::<f64>(Par::Seq, Default::default());
@@ -635,19 +642,23 @@ impl System {
     }
 }
 
-/// How much of a step keeps all positive, 1 at most.
-fn reach(at: &[f64], step: impl IntoIterator<Item = f64>) -> f64 {
-    let negative = at.iter().zip(step).filter(|e| e.1 < 0.0);
-    negative.map(|(a, s)| -a / s).fold(1.0, f64::min)
+/// How much of steps from these values keeps all positive, 1 at most.
+fn reach(steps: impl Iterator<Item = (f64, f64)>) -> f64 {
+    let negative = steps.filter(|e| e.1 < 0.0);
+    negative.map(|(at, step)| -at / step).fold(1.0, f64::min)
 }
 
 /// How much of a step keeps all positive, and its weight, not below `least`, against another one with which that is most.
 fn farthest(at: &[f64], step: &[f64], other: &[f64], least: f64) -> (f64, f64) {
+    let all = at.iter().zip(step.iter().zip(other));
+    // what neither step takes to its bound no mean of them does
+    let blocks = |(at, (step, other)): &(&f64, (&f64, &f64))| **at + step.min(**other) < 0.0;
+    let blocking: Vec<_> = all.filter(blocks).collect();
     let weights = (0..=WEIGHTS).map(|k| mean(1.0, least, f64::from(k) / f64::from(WEIGHTS)));
     let far = |weight: f64| {
-        let pairs = step.iter().zip(other);
-        let step = pairs.map(|(s, o)| mean(*s, *o, weight));
-        (reach(at, step), weight)
+        let steps = blocking.iter();
+        let steps = steps.map(|&(at, (step, other))| (*at, mean(*step, *other, weight)));
+        (reach(steps), weight)
     };
     let farthest = weights.map(far).max_by(|a, b| a.0.total_cmp(&b.0));
     farthest.unwrap_or((1.0, 1.0))
@@ -922,8 +933,8 @@ fn whole_step(
     let count = p.bounds();
     let full: Vec<f64> = (0..count).map(|b| -at.w[b] * at.z[b]).collect();
     let affine = system.step(p, at, rp, rd, &full);
-    let first = reach(&at.w, affine.w.iter().copied());
-    let second = reach(&at.z, affine.z.iter().copied());
+    let steps = |at: &[f64], step: &[f64]| reach(at.iter().copied().zip(step.iter().copied()));
+    let (first, second) = (steps(&at.w, &affine.w), steps(&at.z, &affine.z));
     let product = |step: &Iterate, [primal, dual]: [f64; 2]| {
         let of = |b| (at.w[b] + primal * step.w[b]) * (at.z[b] + dual * step.z[b]);
         (0..count).map(of).sum::<f64>() / count.max(1) as f64
