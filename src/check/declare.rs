@@ -581,7 +581,7 @@ impl Compiler {
         for f in list {
             let path = f.path.as_deref().unwrap_or_default().to_lowercase();
             let Some(found) = functions::of_library(&path) else {
-                let known: Vec<_> = functions::names_in_library().collect();
+                let known = functions::names_in_library();
                 return Diagnostic::error("E0301", f.name.span)
                     .says(format!("the library function `{path}` is not in bmod"))
                     .help(format!("there are, of `stolib`: {}", known.join(", ")))

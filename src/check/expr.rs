@@ -659,21 +659,25 @@ impl Compiler {
 
     /// The normal distribution at `x, mean, deviation`: Φ(z), or its density exp(−z²/2)/(√2π·deviation).
     fn normal_curve(&mut self, density: bool, args: &[Expr], span: Span) -> Checked<Node> {
-        let e = |kind| Expr { kind, span };
-        let call = |name: &str, of| {
-            let name = name.into();
-            e(ExprKind::Apply(Ident { name, span }, None, Some(vec![of])))
+        let binary = |op, a, b| Expr {
+            kind: ExprKind::Binary(op, Box::new(a), Box::new(b)),
+            span,
         };
-        let binary = |op, a, b| e(ExprKind::Binary(op, Box::new(a), Box::new(b)));
-        let over = |a, b| binary(BinaryOp::Divide, a, b);
         let less = binary(BinaryOp::Subtract, args[0].clone(), args[1].clone());
-        let z = over(less, args[2].clone());
+        let z = self.expr(&binary(BinaryOp::Divide, less, args[2].clone()))?;
+        let call = |f, of: Node| {
+            let v = of.has_var;
+            combine(NodeKind::Call(f, vec![of]), span, v, false)
+        };
         if !density {
-            return self.expr(&call("errorf", z));
+            return Ok(call(Function::ErrorF, z));
         }
-        let half = over(call("sqr", z), e(ExprKind::Number(-2.0)));
-        let scale = e(ExprKind::Number((2.0 * std::f64::consts::PI).sqrt()));
-        self.expr(&over(over(call("exp", half), scale), args[2].clone()))
+        let divisor = |x| (true, Node::number(x, span));
+        let half = vec![(false, call(Function::Sqr, z)), divisor(-2.0)];
+        let bell = call(Function::Exp, self.product(half, span)?);
+        let scale = divisor((2.0 * std::f64::consts::PI).sqrt());
+        let deviation = (true, self.expr(&args[2])?);
+        self.product(vec![(false, bell), scale, deviation], span)
     }
 
     /// `ord(i)`, `card(s)`, and both of a text.

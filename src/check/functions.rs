@@ -39,10 +39,12 @@ const NORMAL_CURVE: [(&str, bool); 2] = [("stolib.cdfnormal", false), ("stolib.p
 const LIBRARY: &str = "stolib.";
 
 /// The functions that can be named by `function f /stolib.dnormal/`, without the library.
-pub fn names_in_library() -> impl Iterator<Item = &'static str> {
+pub fn names_in_library() -> Vec<&'static str> {
     let curve = NORMAL_CURVE.iter().map(|f| f.0);
     let all = curve.chain(names_of_data());
-    all.filter_map(|name| name.strip_prefix(LIBRARY))
+    let mut all: Vec<_> = all.filter_map(|n| n.strip_prefix(LIBRARY)).collect();
+    all.sort_unstable();
+    all
 }
 
 /// `stolib.dnormal`, in lower case.

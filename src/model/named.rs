@@ -36,6 +36,12 @@ macro_rules! named {
                 let is = |n: &&str| n.eq_ignore_ascii_case(name);
                 Self::ALL.iter().copied().find(|v| v.names().iter().any(is))
             }
+
+            /// The name of the one of this code.
+            pub(crate) fn name_of_code(code: f64) -> Option<&'static str> {
+                let is = |v: &&Self| f64::from(**v as i32) == code;
+                Self::ALL.iter().find(is).map(|v| v.name())
+            }
         }
     };
 }

@@ -47,12 +47,6 @@ impl ModelStatus {
     pub fn has_solution(self) -> bool {
         self.is_solution() || matches!(self, Self::Feasible | Self::IntegerSolution)
     }
-
-    /// The words for a code, if it is one.
-    pub(crate) fn name_of(code: f64) -> Option<&'static str> {
-        let mut all = Self::ALL.iter();
-        all.find(|s| f64::from(**s as u8) == code).map(|s| s.name())
-    }
 }
 
 named! {
@@ -77,14 +71,6 @@ named! {
         InternalSolverFailure = 11 "internal solver failure";
         /// It was not asked, because of errors before.
         ProcessingSkipped = 12 "solve processing skipped";
-    }
-}
-
-impl SolverStatus {
-    /// The words for a code, if it is one.
-    pub(crate) fn name_of(code: f64) -> Option<&'static str> {
-        let mut all = Self::ALL.iter();
-        all.find(|s| f64::from(**s as u8) == code).map(|s| s.name())
     }
 }
 

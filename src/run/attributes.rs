@@ -55,12 +55,12 @@ impl Machine<'_> {
 
     /// `m.tmodstat`, `m.tsolstat`: the status with its name.
     pub(super) fn status_text(&self, s: SymbolId, a: &str) -> String {
-        let code = |a| self.object_attribute(s, a);
-        let (code, name) = match a {
-            "tmodstat" => (code("modelstat"), ModelStatus::name_of(code("modelstat"))),
-            _ => (code("solvestat"), SolverStatus::name_of(code("solvestat"))),
+        let (of, name_of): (_, fn(f64) -> _) = match a {
+            "tmodstat" => ("modelstat", ModelStatus::name_of_code),
+            _ => ("solvestat", SolverStatus::name_of_code),
         };
-        match name {
+        let code = self.object_attribute(s, of);
+        match name_of(code) {
             Some(name) => format!("{code} {}", capitals(name)),
             None => "No Status Available".into(),
         }

@@ -648,31 +648,39 @@ fn reach(steps: impl Iterator<Item = (f64, f64)>) -> f64 {
     negative.map(|(at, step)| -at / step).fold(1.0, f64::min)
 }
 
-/// How much of a step keeps all positive, and its weight, not below `least`, against another one with which that is most.
-fn farthest(at: &[f64], step: &[f64], other: &[f64], least: f64) -> (f64, f64) {
-    let all = at.iter().zip(step.iter().zip(other));
+/// How far a step goes, at most 1, and the bound that stops it before.
+type Way = (f64, Option<usize>);
+
+/// The way of a step that keeps all positive, and its weight, not below `least`, against another one with which that is longest.
+fn farthest(at: &[f64], step: &[f64], other: &[f64], least: f64) -> (Way, f64) {
     // what neither step takes to its bound no mean of them does
-    let blocks = |(at, (step, other)): &(&f64, (&f64, &f64))| **at + step.min(**other) < 0.0;
-    let blocking: Vec<_> = all.filter(blocks).collect();
+    let blocks = |b: &usize| at[*b] + step[*b].min(other[*b]) < 0.0;
+    let blocking: Vec<usize> = (0..at.len()).filter(blocks).collect();
     let weights = (0..=WEIGHTS).map(|k| mean(1.0, least, f64::from(k) / f64::from(WEIGHTS)));
     let far = |weight: f64| {
-        let steps = blocking.iter();
-        let steps = steps.map(|&(at, (step, other))| (*at, mean(*step, *other, weight)));
-        (reach(steps), weight)
+        let mut way: Way = (1.0, None);
+        for &b in &blocking {
+            let step = mean(step[b], other[b], weight);
+            if step < 0.0 && -at[b] / step < way.0 {
+                way = (-at[b] / step, Some(b));
+            }
+        }
+        (way, weight)
     };
-    let farthest = weights.map(far).max_by(|a, b| a.0.total_cmp(&b.0));
-    farthest.unwrap_or((1.0, 1.0))
+    let farthest = weights
+        .map(far)
+        .max_by(|(a, _), (b, _)| a.0.total_cmp(&b.0));
+    farthest.unwrap_or(((1.0, None), 1.0))
 }
 
-/// How much of a step is gone where `way` leads to a bound: until the product there is as wanted (Mehrotra 1992).
+/// How much of a step is gone where its way leads to a bound: until the product there is as wanted (Mehrotra 1992).
 fn before_bound(
-    way: f64,
+    (way, stops): Way,
     [at, step]: [&[f64]; 2],
     factor: impl Fn(usize) -> f64,
     wanted: f64,
 ) -> f64 {
-    let blocks = |b: &usize| step[*b] < 0.0 && -at[*b] / step[*b] <= way;
-    let Some(b) = (0..at.len()).find(blocks).filter(|_| way < 1.0) else {
+    let Some(b) = stops else {
         return way;
     };
     let distance = wanted / factor(b).max(f64::MIN_POSITIVE);
@@ -950,9 +958,9 @@ fn whole_step(
     step.weigh(&affine, [weight, other]);
     let finite = step.y.iter().chain(&step.value).all(|v| v.is_finite());
     (finite && !system.unsound).then_some(())?;
-    let wanted = LATE * product(&step, [primal, dual]);
-    let z = |b: usize| at.z[b] + dual * step.z[b];
-    let w = |b: usize| at.w[b] + primal * step.w[b];
+    let wanted = LATE * product(&step, [primal.0, dual.0]);
+    let z = |b: usize| at.z[b] + dual.0 * step.z[b];
+    let w = |b: usize| at.w[b] + primal.0 * step.w[b];
     let ways = [
         before_bound(primal, [&at.w, &step.w], z, wanted),
         before_bound(dual, [&at.z, &step.z], w, wanted),

@@ -6,12 +6,13 @@
 //! Gomory's mixed-integer cut (1960); single rows, and rows added so that continuous columns between their bounds cancel,
 //! with variable bounds `x ≤ u·y` put in, give those that lot sizing and fixed charges need. Knapsack rows give extended
 //! covers besides; rows of integers alone, added so that what is odd cancels, cuts of halves; jobs in sequence the times of
-//! those before and after.
+//! those before and after; binaries of which any two exclude each other cliques.
 
 use super::linear::{Cut, Linear};
 use super::model::Mip;
 use crate::solve::lp::simplex::factor::Entries;
 
+mod clique;
 mod parity;
 mod sequence;
 
@@ -32,6 +33,7 @@ pub struct Separator<'a> {
     /// The step of a row's activities, where it has integer columns only; 0 for others. Of the cuts so far, too.
     step: Vec<f64>,
     sequences: Option<sequence::Sequences>,
+    conflicts: clique::Conflicts,
     lower: &'a [f64],
     upper: &'a [f64],
 }
@@ -146,6 +148,7 @@ impl<'a> Separator<'a> {
             variable_upper,
             step,
             sequences: sequence::Sequences::find(mip, lower, upper),
+            conflicts: clique::Conflicts::find(mip, lower, upper),
             lower,
             upper,
         }
@@ -182,7 +185,8 @@ impl<'a> Separator<'a> {
             }
         }
         let sequences = self.sequences.iter();
-        for cut in sequences.flat_map(|s| s.separate(self, &values)) {
+        let sequences = sequences.flat_map(|s| s.separate(self, &values));
+        for cut in sequences.chain(self.conflicts.separate(self, &values)) {
             let mut out = vec![0.0; n];
             cut.terms.iter().for_each(|&(j, a)| out[j] += a);
             add(self.clean(out, cut.side, &values));

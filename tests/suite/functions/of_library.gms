@@ -1,7 +1,7 @@
-* bmod only: functions of `stolib` by names of one's own; their draws come from the one stream of random numbers
+* bmod only: functions of `stolib` by names of one's own (`exp`, too); their draws come from the one stream of random numbers
 $funcLibIn stolib stodclib
 Functions draw    /stolib.dnormal /
-          waits   / stolib.dexponential/,
+          exp     / stolib.dexponential/,
           arrive  /stolib.dpoisson/
           reseed  /stolib.SetSeed/;
 function  below 'area on the left' /stolib.cdfNormal/;
@@ -16,7 +16,7 @@ again = draw(50, 10);
 abort$(at <> again) 'the seed decides what is drawn', at, again;
 
 parameter w(i), a(i), mean(*);
-w(i) = waits(0.25);
+w(i) = exp(0.25);
 a(i) = arrive(3);
 abort$sum(i$(a(i) <> floor(a(i)) or a(i) < 0 or w(i) < 0), 1) 'counts and times', a, w;
 mean('w') = round(sum(i, w(i)) / card(i));

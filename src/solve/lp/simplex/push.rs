@@ -75,7 +75,8 @@ impl Simplex {
             done = self.push_multipliers(&start.y, stop);
         }
         self.crossing = None;
-        done
+        // On the way values may have been kept that the basis does not have.
+        done.and_then(|()| self.compute_values().ok_or(Ended::Failed))
     }
 
     /// Factorises the first basis. Where variables at their bounds have displaced some from inside, which depend on
