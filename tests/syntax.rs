@@ -113,14 +113,14 @@ fn show(e: &Expr) -> String {
         ExprKind::Sum(terms) => {
             let t = terms
                 .iter()
-                .map(|(s, e)| format!("{}{}", if *s == Sign::Plus { "+" } else { "-" }, show(e)));
+                .map(|(s, e)| format!("{}{}", if *s { "-" } else { "+" }, show(e)));
             format!("({})", t.collect::<String>())
         }
         ExprKind::Product(factors) => {
             let t = factors.iter().map(|(s, e)| {
                 format!(
                     "{}{}",
-                    if *s == Factor::Multiply { "*" } else { "/" },
+                    if *s { "/" } else { "*" },
                     show(e)
                 )
             });

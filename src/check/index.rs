@@ -8,7 +8,7 @@ use super::symbols::{DomainPosition, SymbolKind, UNIVERSE};
 use super::{Checked, Compiler, Failed};
 use crate::diag::{Diagnostic, Severity, nearest};
 use crate::source::Span;
-use crate::syntax::ast::{Expr, ExprKind, Ident, Sign};
+use crate::syntax::ast::{Expr, ExprKind, Ident};
 use std::sync::Arc;
 
 impl Compiler {
@@ -535,8 +535,8 @@ impl Compiler {
                         .fail(self);
                 }
                 let mut offset = Vec::new();
-                for (sign, t) in &terms[1..] {
-                    offset.push((*sign == Sign::Minus, self.expr(t)?));
+                for (minus, t) in &terms[1..] {
+                    offset.push((*minus, self.expr(t)?));
                 }
                 let offset = match offset.len() {
                     1 if !offset[0].0 => offset.remove(0).1,

@@ -338,10 +338,10 @@ pub enum ExprKind {
     Unary(UnaryOp, Box<Expr>),
     /// An infix operator.
     Binary(BinaryOp, Box<Expr>, Box<Expr>),
-    /// A chain of two or more terms joined by `+` and `-` (the first has `Plus`).
-    Sum(Vec<(Sign, Expr)>),
-    /// A chain of three or more factors joined by `*` and `/`, left to right (the first has `Multiply`).
-    Product(Vec<(Factor, Expr)>),
+    /// A chain of two or more terms joined by `+` and `-`; true for those that are subtracted.
+    Sum(Vec<(bool, Expr)>),
+    /// A chain of three or more factors joined by `*` and `/`, left to right; true for those that divide.
+    Product(Vec<(bool, Expr)>),
     /// `e $ c`.
     Dollar(Box<Expr>, Box<Expr>),
     /// `sum((i,j)$c, e)` and its kin.
@@ -385,24 +385,6 @@ named! {
     }
 }
 
-/// Sign of a term in a chain.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Sign {
-    /// `+`
-    Plus,
-    /// `-`
-    Minus,
-}
-
-/// How a factor joins a chain.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Factor {
-    /// `*`
-    Multiply,
-    /// `/`
-    Divide,
-}
-
 named! {
     /// Operators over a domain.
     pub enum AggregateOp {
@@ -412,6 +394,18 @@ named! {
         Smax "smax";
         Sand "sand";
         Sor "sor";
+    }
+}
+
+impl AggregateOp {
+    /// Its value where there is nothing to run over.
+    pub fn of_nothing(self) -> f64 {
+        match self {
+            Self::Sum | Self::Sor => 0.0,
+            Self::Prod | Self::Sand => 1.0,
+            Self::Smin => f64::INFINITY,
+            Self::Smax => f64::NEG_INFINITY,
+        }
     }
 }
 
