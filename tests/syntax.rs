@@ -117,13 +117,9 @@ fn show(e: &Expr) -> String {
             format!("({})", t.collect::<String>())
         }
         ExprKind::Product(factors) => {
-            let t = factors.iter().map(|(s, e)| {
-                format!(
-                    "{}{}",
-                    if *s { "/" } else { "*" },
-                    show(e)
-                )
-            });
+            let t = factors
+                .iter()
+                .map(|(s, e)| format!("{}{}", if *s { "/" } else { "*" }, show(e)));
             format!("({})", t.collect::<String>())
         }
         ExprKind::Dollar(a, b) => format!("({}${})", show(a), show(b)),
@@ -476,7 +472,7 @@ fn other_statements() {
         other => panic!("{other:?}"),
     }
     match &s[6].kind {
-        StmtKind::Put(p) => assert_eq!(p.items.len(), 8),
+        StmtKind::Put(_, items) => assert_eq!(items.len(), 8),
         other => panic!("{other:?}"),
     }
 }
@@ -585,7 +581,7 @@ fn echoed_files_and_put_blocks() {
     );
     assert_eq!(s.len(), 3);
     assert!(
-        matches!(&s[1].kind, StmtKind::Put(p) if p.items.len() == 4),
+        matches!(&s[1].kind, StmtKind::Put(_, items) if items.len() == 4),
         "{:?}",
         s[1].kind
     );

@@ -122,7 +122,7 @@ impl Compiler {
                     (UnaryOp::Minus, NodeKind::Const(x)) if !x.is_nan() => Node::number(-x, span),
                     (UnaryOp::Minus, _) => {
                         let (v, l) = (a.has_var, a.linear);
-                        combine(NodeKind::Negate(Box::new(a)), span, v, l)
+                        combine(NodeKind::Sum(vec![(true, a)]), span, v, l)
                     }
                     (UnaryOp::Not, _) => {
                         let v = a.has_var;
@@ -140,10 +140,13 @@ impl Compiler {
             }
             ExprKind::Product(factors) => {
                 let nodes: Vec<_> = factors.iter().map(|(_, x)| self.expr(x)).collect();
-                let factors = factors.iter().zip(nodes).map(|((divides, x), node)| match divides {
-                    true => Ok(divisor(x, node?)),
-                    false => Ok((false, node?)),
-                });
+                let factors = factors
+                    .iter()
+                    .zip(nodes)
+                    .map(|((divides, x), node)| match divides {
+                        true => Ok(divisor(x, node?)),
+                        false => Ok((false, node?)),
+                    });
                 self.product(factors.collect::<Checked<_>>()?, span)
             }
             ExprKind::Binary(BinaryOp::Divide, a, right) => {

@@ -521,7 +521,9 @@ impl Compiler {
                 let offset = self.expr(offset)?;
                 let span = offset.span;
                 let offset = match op {
-                    BinaryOp::CircularMinus => Node::data(NodeKind::Negate(Box::new(offset)), span),
+                    BinaryOp::CircularMinus => {
+                        Node::data(NodeKind::Sum(vec![(true, offset)]), span)
+                    }
                     _ => offset,
                 };
                 (offset, true)

@@ -215,7 +215,6 @@ impl Machine<'_> {
                 }
                 acc
             }
-            NodeKind::Negate(a) => arithmetic::negate(self.no_acronym(self.eval(a, frame), a.span)),
             NodeKind::Not(a) => arithmetic::not(self.eval(a, frame)),
             NodeKind::Binary(BinaryOp::Power, a, b) => {
                 let (a, b) = (self.eval(a, frame), self.eval(b, frame));

@@ -46,7 +46,6 @@ impl Builder<'_, '_> {
                 Some(Err(x)) => row.constant += coef * x,
                 None => {}
             },
-            NodeKind::Negate(a) => self.emit(a, -coef, frame, row),
             NodeKind::Sum(terms) => {
                 for (minus, t) in terms {
                     self.emit(t, if *minus { -coef } else { coef }, frame, row);
@@ -217,10 +216,6 @@ impl Builder<'_, '_> {
             return;
         }
         match &n.kind {
-            NodeKind::Negate(a) => {
-                self.build(a, frame, tape);
-                tape.ops.push(Op::Negate);
-            }
             NodeKind::Not(a) => {
                 self.build(a, frame, tape);
                 tape.ops.push(Op::Call(Function::BoolNot, 1));
