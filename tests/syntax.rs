@@ -429,7 +429,7 @@ fn blocks() {
         other => panic!("{other:?}"),
     }
     let s = statements("loop(i, loop(j, if(x, break$(n = 2) 2; else break;)));");
-    assert!(format!("{:?}", s[0].kind).contains("}), 2)"));
+    assert!(format!("{:?}", s[0].kind).contains("Break(2)"));
     let s = statements(
         "$onEnd\nif x then y = 1; else y = 2; endif;\nloop i do y = 1; endloop;\nwhile y < 3 do y = 3; endwhile; for y = 1 to 3 do x = 1; endfor\nrepeat x = x + 1; until x > 3;",
     );
@@ -456,8 +456,8 @@ fn other_statements() {
     assert_eq!(
         s.iter().map(name).collect::<Vec<_>>(),
         [
-            "Model", "Alias", "Solve", "Display", "Abort", "File", "Put", "Put", "Exchange",
-            "Option", "Acronym", "Figure", "Draw", "Assign", "Assign", "Assign"
+            "Model", "Alias", "Solve", "If", "Abort", "File", "Put", "Put", "Exchange", "Option",
+            "Acronym", "Figure", "Draw", "Assign", "Assign", "Assign"
         ]
     );
     match &s[0].kind {
