@@ -65,14 +65,16 @@ fn chain(n: usize) -> Instance {
         Op::Var(1),
         Op::Var(0),
         Op::PowerInt(2),
-        Op::Subtract,
+        Op::Negate,
+        Op::Add(2),
         Op::PowerInt(2),
-        Op::Multiply,
+        Op::Multiply(2),
         Op::Const(1),
         Op::Var(0),
-        Op::Subtract,
+        Op::Negate,
+        Op::Add(2),
         Op::PowerInt(2),
-        Op::Add,
+        Op::Add(2),
     ];
     let mut t = KernelTerms {
         kernel: Kernel {
@@ -105,28 +107,31 @@ fn rocket(nodes: usize) -> Instance {
             Op::Const(0),
             Op::Var(v),
             Op::PowerInt(2),
-            Op::Multiply,
+            Op::Multiply(2),
             Op::Const(1),
             Op::Var(h),
             Op::Const(2),
-            Op::Subtract,
-            Op::Multiply,
+            Op::Negate,
+            Op::Add(2),
+            Op::Multiply(2),
             Op::Call(Function::Exp, 1),
-            Op::Multiply,
+            Op::Multiply(2),
         ]
     };
     // (T − D)/m − (1/h)²
     let mut ops = vec![Op::Var(3)];
     ops.extend(drag(0, 1));
     ops.extend([
-        Op::Subtract,
+        Op::Negate,
+        Op::Add(2),
         Op::Var(2),
         Op::Divide,
         Op::Const(2),
         Op::Var(0),
         Op::Divide,
         Op::PowerInt(2),
-        Op::Subtract,
+        Op::Negate,
+        Op::Add(2),
     ]);
     let mut t = KernelTerms {
         kernel: Kernel {
@@ -177,12 +182,11 @@ fn scalar(rows: usize) -> Instance {
         let mut ops = vec![Op::Var(0)];
         for k in 1..8u32 {
             ops.push(Op::Var(k));
-            ops.push(match random(4) {
-                0 => Op::Add,
-                1 => Op::Multiply,
-                2 => Op::Subtract,
-                _ => Op::Multiply,
-            });
+            match random(4) {
+                0 => ops.push(Op::Add(2)),
+                2 => ops.extend([Op::Negate, Op::Add(2)]),
+                _ => ops.push(Op::Multiply(2)),
+            }
             match random(5) {
                 0 => ops.push(Op::Call(Function::Sin, 1)),
                 1 => ops.push(Op::PowerInt(2)),

@@ -2,7 +2,12 @@
 //!
 //! Invariant: nothing below the command line does input or output except through a [`Host`].
 
+use jiff::Span;
+use jiff::civil::{Date, date};
 use std::path::{Path, PathBuf};
+
+/// The day with the number 0.
+pub(crate) const EPOCH: Date = date(1899, 12, 31);
 
 /// Why the host would not do something.
 #[derive(Debug, Clone, PartialEq)]
@@ -76,6 +81,12 @@ pub trait Host {
     fn available_memory(&self) -> Option<usize> {
         None
     }
+}
+
+/// The date of a day number.
+pub(crate) fn date_of(day: f64) -> Option<Date> {
+    let days = Span::new().try_days(day.floor() as i64).ok()?;
+    EPOCH.checked_add(days).ok()
 }
 
 /// Days since 1899-12-31, as GAMS counts, from seconds since 1970-01-01 UTC (which is day 25568).

@@ -104,23 +104,11 @@ fn reference(kernel: &Kernel, x: &[f64], c: &[f64]) -> Option<(Second, [f64; 3])
                 }
                 s
             }
-            Op::Add => {
-                let (b, a) = (stack.pop()?, stack.pop()?);
-                sum(&[a, b])
-            }
-            Op::AddN(k) => {
+            Op::Add(k) => {
                 let items = stack.split_off(stack.len() - k as usize);
                 sum(&items)
             }
-            Op::Subtract => {
-                let (b, a) = (stack.pop()?, stack.pop()?);
-                Second::compose(&[a.clone(), b.clone()], a.v - b.v, &[1.0, -1.0], &[0.0; 3])
-            }
-            Op::Multiply => {
-                let (b, a) = (stack.pop()?, stack.pop()?);
-                product(&a, &b)
-            }
-            Op::MultiplyN(k) => {
+            Op::Multiply(k) => {
                 let items = stack.split_off(stack.len() - k as usize);
                 items[1..]
                     .iter()
@@ -201,22 +189,22 @@ fn expression(r: &mut Random, n: u32, m: u32, depth: u32, ops: &mut Vec<Op>) {
     }
     let sub = |r: &mut Random, ops: &mut Vec<Op>| expression(r, n, m, depth - 1, ops);
     // 1.5 + tanh-like squashing keeps arguments of log, sqrt and powers inside (0.5, 2.5)
-    let squash = |ops: &mut Vec<Op>| ops.extend([Op::Call(Sigmoid, 1), Op::Const(m), Op::Add]);
+    let squash = |ops: &mut Vec<Op>| ops.extend([Op::Call(Sigmoid, 1), Op::Const(m), Op::Add(2)]);
     match r.below(19) {
         0 | 1 => {
             sub(r, ops);
             sub(r, ops);
-            ops.push(Op::Add);
+            ops.push(Op::Add(2));
         }
         2 => {
             sub(r, ops);
             sub(r, ops);
-            ops.push(Op::Subtract);
+            ops.extend([Op::Negate, Op::Add(2)]);
         }
         3 | 4 => {
             sub(r, ops);
             sub(r, ops);
-            ops.push(Op::Multiply);
+            ops.push(Op::Multiply(2));
         }
         5 => {
             sub(r, ops);
@@ -233,9 +221,9 @@ fn expression(r: &mut Random, n: u32, m: u32, depth: u32, ops: &mut Vec<Op>) {
                 sub(r, ops);
             }
             ops.push(if r.below(2) == 0 {
-                Op::AddN(3)
+                Op::Add(3)
             } else {
-                Op::MultiplyN(3)
+                Op::Multiply(3)
             });
         }
         8 => {
@@ -295,9 +283,9 @@ fn expression(r: &mut Random, n: u32, m: u32, depth: u32, ops: &mut Vec<Op>) {
             let copy: Vec<Op> = ops[at..].to_vec();
             ops.extend(copy);
             ops.push(if r.below(2) == 0 {
-                Op::Multiply
+                Op::Multiply(2)
             } else {
-                Op::Add
+                Op::Add(2)
             });
         }
     }
@@ -560,9 +548,9 @@ fn long_sums_are_linear_in_size() {
     let n = 20_000u32;
     let mut ops: Vec<Op> = Vec::new();
     for k in 0..n {
-        ops.extend([Op::Var(k), Op::PowerInt(3), Op::Const(k), Op::Multiply]);
+        ops.extend([Op::Var(k), Op::PowerInt(3), Op::Const(k), Op::Multiply(2)]);
     }
-    ops.push(Op::AddN(n));
+    ops.push(Op::Add(n));
     let t = KernelTerms {
         kernel: Kernel {
             ops,
@@ -589,7 +577,7 @@ fn long_sums_are_linear_in_size() {
 fn repeated_columns_count_twice_on_the_diagonal() {
     let t = KernelTerms {
         kernel: Kernel {
-            ops: vec![Op::Var(0), Op::Var(1), Op::Multiply],
+            ops: vec![Op::Var(0), Op::Var(1), Op::Multiply(2)],
             variables: 2,
             constants: 0,
         },
@@ -655,7 +643,13 @@ fn failures_name_function_argument_and_column() {
         ),
         (
             one_term(
-                vec![Op::Var(0), Op::Var(1), Op::Subtract, Op::Call(Sqrt, 1)],
+                vec![
+                    Op::Var(0),
+                    Op::Var(1),
+                    Op::Negate,
+                    Op::Add(2),
+                    Op::Call(Sqrt, 1),
+                ],
                 2,
                 vec![],
             ),
@@ -745,9 +739,9 @@ fn degrees_are_found() {
         degree(vec![
             Op::Var(0),
             Op::Const(0),
-            Op::Multiply,
+            Op::Multiply(2),
             Op::Var(1),
-            Op::Add
+            Op::Add(2)
         ]),
         Degree::Linear
     );
@@ -759,14 +753,20 @@ fn degrees_are_found() {
         degree(vec![
             Op::Var(0),
             Op::Var(1),
-            Op::Multiply,
+            Op::Multiply(2),
             Op::Const(0),
             Op::Divide
         ]),
         Degree::Quadratic
     );
     assert_eq!(
-        degree(vec![Op::Var(0), Op::Var(1), Op::Subtract, Op::Call(Sqr, 1)]),
+        degree(vec![
+            Op::Var(0),
+            Op::Var(1),
+            Op::Negate,
+            Op::Add(2),
+            Op::Call(Sqr, 1)
+        ]),
         Degree::Quadratic
     );
     assert_eq!(degree(vec![Op::Var(0), Op::PowerInt(3)]), Degree::Nonlinear);

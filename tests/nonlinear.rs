@@ -147,7 +147,10 @@ fn near(a: f64, b: f64) {
     );
 }
 
-use Op::{Add, Call, Divide, Multiply, PowerInt, Subtract, Var};
+use Op::{Call, Divide, Negate, PowerInt, Var};
+
+const PLUS: Op = Op::Add(2);
+const TIMES: Op = Op::Multiply(2);
 
 fn hs71() -> Model {
     let mut m = Model::new(Sense::Minimize);
@@ -160,13 +163,13 @@ fn hs71() -> Model {
         &[(x[2], 1.0)],
         &[(
             1.0,
-            &[v(0), v(3), Multiply, v(0), v(1), Add, v(2), Add, Multiply],
+            &[v(0), v(3), TIMES, v(0), v(1), PLUS, v(2), PLUS, TIMES],
         )],
         0.0,
     );
     m.row(
         &[],
-        &[(1.0, &[v(0), v(1), Multiply, v(2), Multiply, v(3), Multiply])],
+        &[(1.0, &[v(0), v(1), TIMES, v(2), TIMES, v(3), TIMES])],
         Relation::Greater,
         25.0,
     );
@@ -224,7 +227,7 @@ fn marginals_have_the_signs_of_gams() {
     let mut m = Model::new(Sense::Minimize);
     let x = m.var((0.0, 5.0), 0.0);
     let y = m.var((0.0, INF), 0.0);
-    let square: &[Op] = &[Var(x), Var(y), Add, PowerInt(2)];
+    let square: &[Op] = &[Var(x), Var(y), PLUS, PowerInt(2)];
     // (x + y)² − 20 (x + y) + 100
     m.objective(&[(x, 1.0 - 20.0), (y, 2.0 - 20.0)], &[(1.0, square)], 100.0);
     m.row(&[(x, 1.0), (y, 1.0)], &[], Relation::Greater, 10.0);
@@ -243,7 +246,10 @@ fn rosenbrock() {
     m.objective(
         &[(x, -2.0)],
         &[
-            (100.0, &[Var(y), Var(x), PowerInt(2), Subtract, PowerInt(2)]),
+            (
+                100.0,
+                &[Var(y), Var(x), PowerInt(2), Negate, PLUS, PowerInt(2)],
+            ),
             (1.0, &[Var(x), PowerInt(2)]),
         ],
         1.0,
@@ -260,7 +266,7 @@ fn product_of_free_variables_is_unbounded() {
     for start in [(0.0, 0.0), (1.0, 1.0), (1.0, -1.0), (0.0, 1.0)] {
         let mut m = Model::new(Sense::Minimize);
         let (x, y) = (m.var(FREE, start.0), m.var(FREE, start.1));
-        m.objective(&[], &[(1.0, &[Var(x), Var(y), Multiply])], 0.0);
+        m.objective(&[], &[(1.0, &[Var(x), Var(y), TIMES])], 0.0);
         expect(&m, Unbounded, None);
     }
 }
@@ -269,7 +275,7 @@ fn product_of_free_variables_is_unbounded() {
 fn maximum_of_an_exponential_is_unbounded() {
     let mut m = Model::new(Sense::Maximize);
     let x = m.var(FREE, 0.0);
-    m.objective(&[], &[(1.0, &[Var(x), PowerInt(3), Var(x), Add])], 0.0);
+    m.objective(&[], &[(1.0, &[Var(x), PowerInt(3), Var(x), PLUS])], 0.0);
     expect(&m, Unbounded, None);
 }
 
@@ -283,7 +289,7 @@ fn saddles_are_left() {
     // x·y on the unit disk from its centre
     let mut m = Model::new(Sense::Minimize);
     let (x, y) = (m.var(FREE, 0.0), m.var(FREE, 0.0));
-    m.objective(&[], &[(1.0, &[Var(x), Var(y), Multiply])], 0.0);
+    m.objective(&[], &[(1.0, &[Var(x), Var(y), TIMES])], 0.0);
     m.row(
         &[],
         &[(1.0, &[Var(x), PowerInt(2)]), (1.0, &[Var(y), PowerInt(2)])],
@@ -334,7 +340,7 @@ fn fixed_variables_have_marginals() {
     m.objective(
         &[],
         &[
-            (1.0, &[Var(x), Var(y), Subtract, PowerInt(2)]),
+            (1.0, &[Var(x), Var(y), Negate, PLUS, PowerInt(2)]),
             (1.0, &[Var(x), PowerInt(3)]),
         ],
         0.0,
@@ -370,7 +376,7 @@ fn square_and_overdetermined_systems() {
         );
         m.row(
             &[],
-            &[(1.0, &[Var(x), Var(y), Multiply])],
+            &[(1.0, &[Var(x), Var(y), TIMES])],
             Relation::Equal,
             12.0,
         );
@@ -378,7 +384,7 @@ fn square_and_overdetermined_systems() {
             m.row(&[(x, 1.0), (y, 1.0)], &[], Relation::Equal, 7.0);
             m.row(
                 &[],
-                &[(1.0, &[Var(x), Var(y), Add, PowerInt(2)])],
+                &[(1.0, &[Var(x), Var(y), PLUS, PowerInt(2)])],
                 Relation::Equal,
                 49.0,
             );
@@ -424,12 +430,7 @@ fn degenerate_constraints() {
         &[(1.0, &[Var(x), PowerInt(2)]), (1.0, &[Var(y), PowerInt(2)])],
         5.0,
     );
-    m.row(
-        &[],
-        &[(1.0, &[Var(x), Var(y), Multiply])],
-        Relation::Less,
-        0.0,
-    );
+    m.row(&[], &[(1.0, &[Var(x), Var(y), TIMES])], Relation::Less, 0.0);
     for p in interior_point_solvers() {
         let a = run(p.about().name, &m.0).unwrap();
         assert!(
@@ -642,11 +643,11 @@ fn interruption_and_log() {
         .collect();
     let terms: Vec<Vec<Op>> = x
         .windows(2)
-        .map(|w| vec![Var(w[1]), Var(w[0]), PowerInt(2), Subtract, PowerInt(2)])
+        .map(|w| vec![Var(w[1]), Var(w[0]), PowerInt(2), Negate, PLUS, PowerInt(2)])
         .collect();
     let ones: Vec<Vec<Op>> = x
         .iter()
-        .map(|&j| vec![Var(j), PowerInt(4), Var(j), Subtract])
+        .map(|&j| vec![Var(j), PowerInt(4), Var(j), Negate, PLUS])
         .collect();
     let all: Vec<(f64, &[Op])> = terms
         .iter()
@@ -693,8 +694,11 @@ fn kinks() {
     m.objective(
         &[],
         &[
-            (1.0, &[Var(x), Var(one), Subtract, Call(Function::Abs, 1)]),
-            (0.5, &[Var(x), Var(one), Add, Call(Function::Abs, 1)]),
+            (
+                1.0,
+                &[Var(x), Var(one), Negate, PLUS, Call(Function::Abs, 1)],
+            ),
+            (0.5, &[Var(x), Var(one), PLUS, Call(Function::Abs, 1)]),
             (0.0, &[Var(x), Var(one), Divide]),
         ],
         0.0,

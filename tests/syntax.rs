@@ -113,17 +113,13 @@ fn show(e: &Expr) -> String {
         ExprKind::Sum(terms) => {
             let t = terms
                 .iter()
-                .map(|(s, e)| format!("{}{}", if *s == Sign::Plus { "+" } else { "-" }, show(e)));
+                .map(|(s, e)| format!("{}{}", if *s { "-" } else { "+" }, show(e)));
             format!("({})", t.collect::<String>())
         }
         ExprKind::Product(factors) => {
-            let t = factors.iter().map(|(s, e)| {
-                format!(
-                    "{}{}",
-                    if *s == Factor::Multiply { "*" } else { "/" },
-                    show(e)
-                )
-            });
+            let t = factors
+                .iter()
+                .map(|(s, e)| format!("{}{}", if *s { "/" } else { "*" }, show(e)));
             format!("({})", t.collect::<String>())
         }
         ExprKind::Dollar(a, b) => format!("({}${})", show(a), show(b)),
@@ -433,7 +429,7 @@ fn blocks() {
         other => panic!("{other:?}"),
     }
     let s = statements("loop(i, loop(j, if(x, break$(n = 2) 2; else break;)));");
-    assert!(format!("{:?}", s[0].kind).contains("}), 2)"));
+    assert!(format!("{:?}", s[0].kind).contains("Break(2)"));
     let s = statements(
         "$onEnd\nif x then y = 1; else y = 2; endif;\nloop i do y = 1; endloop;\nwhile y < 3 do y = 3; endwhile; for y = 1 to 3 do x = 1; endfor\nrepeat x = x + 1; until x > 3;",
     );
@@ -460,8 +456,8 @@ fn other_statements() {
     assert_eq!(
         s.iter().map(name).collect::<Vec<_>>(),
         [
-            "Model", "Alias", "Solve", "Display", "Abort", "File", "Put", "Put", "Exchange",
-            "Option", "Acronym", "Figure", "Draw", "Assign", "Assign", "Assign"
+            "Model", "Alias", "Solve", "If", "Abort", "File", "Put", "Put", "Exchange", "Option",
+            "Acronym", "Figure", "Draw", "Assign", "Assign", "Assign"
         ]
     );
     match &s[0].kind {
@@ -476,7 +472,7 @@ fn other_statements() {
         other => panic!("{other:?}"),
     }
     match &s[6].kind {
-        StmtKind::Put(p) => assert_eq!(p.items.len(), 8),
+        StmtKind::Put(_, items) => assert_eq!(items.len(), 8),
         other => panic!("{other:?}"),
     }
 }
@@ -585,7 +581,7 @@ fn echoed_files_and_put_blocks() {
     );
     assert_eq!(s.len(), 3);
     assert!(
-        matches!(&s[1].kind, StmtKind::Put(p) if p.items.len() == 4),
+        matches!(&s[1].kind, StmtKind::Put(_, items) if items.len() == 4),
         "{:?}",
         s[1].kind
     );

@@ -39,27 +39,15 @@ impl<const N: usize> Labels for [&str; N] {
     }
 }
 
-impl Labels for [&str] {
+impl<T: AsRef<str>> Labels for [T] {
     fn labels(&self) -> Vec<String> {
-        self.iter().map(ToString::to_string).collect()
+        self.iter().map(|l| l.as_ref().into()).collect()
     }
 }
 
-impl Labels for [String] {
-    fn labels(&self) -> Vec<String> {
-        self.to_vec()
-    }
-}
-
-impl Labels for Vec<&str> {
+impl<T: AsRef<str>> Labels for Vec<T> {
     fn labels(&self) -> Vec<String> {
         self.as_slice().labels()
-    }
-}
-
-impl Labels for Vec<String> {
-    fn labels(&self) -> Vec<String> {
-        self.clone()
     }
 }
 

@@ -212,7 +212,7 @@ fn curved(kernel: &Kernel) -> Vec<Vec<u32>> {
     while let Some(end) = rest.pop() {
         match ops[end] {
             Op::Const(_) | Op::Var(_) | Op::Affine(..) => {}
-            Op::Add | Op::AddN(_) | Op::Subtract | Op::Negate => {
+            Op::Add(_) | Op::Negate => {
                 let mut next = end;
                 for _ in 0..ops[end].arguments() {
                     rest.push(next - 1);
@@ -279,7 +279,7 @@ type Addend = std::ops::Range<usize>;
 fn split_sum(terms: &KernelTerms) -> Option<Vec<KernelTerms>> {
     const LONG: usize = 16;
     let kernel = &terms.kernel;
-    let Some(&Op::AddN(n)) = kernel.ops.last() else {
+    let Some(&Op::Add(n @ 3..)) = kernel.ops.last() else {
         return None;
     };
     if (n as usize) < LONG || terms.row.len() > LONG {
@@ -385,11 +385,11 @@ fn hash(kernel: &Kernel) -> u64 {
     for op in &kernel.ops {
         std::mem::discriminant(op).hash(&mut h);
         match *op {
-            Op::Var(k) | Op::Const(k) | Op::AddN(k) | Op::MultiplyN(k) => k.hash(&mut h),
+            Op::Var(k) | Op::Const(k) | Op::Add(k) | Op::Multiply(k) => k.hash(&mut h),
             Op::Affine(constant, variable, terms) => (constant, variable, terms).hash(&mut h),
             Op::PowerInt(n) => n.hash(&mut h),
             Op::Call(f, n) => (f, n).hash(&mut h),
-            Op::Add | Op::Subtract | Op::Multiply | Op::Divide | Op::Negate | Op::Power => {}
+            Op::Divide | Op::Negate | Op::Power => {}
         }
     }
     h.finish()

@@ -81,10 +81,10 @@ fn put_in(terms: &KernelTerms, mask: &[bool], members: &[usize], value: &[f64]) 
                         ops.extend([
                             Op::Const(constant + 1 + m as u32),
                             variable(k),
-                            Op::Multiply,
+                            Op::Multiply(2),
                         ]);
                     }
-                    ops.push(Op::AddN(n + 1));
+                    ops.push(Op::Add(n + 1));
                 } else {
                     let variable = place.get(first as usize).copied().unwrap_or(0);
                     ops.push(Op::Affine(constant, variable, n));

@@ -116,14 +116,9 @@ impl Builder<'_> {
                         constant: base,
                     }
                 }
-                Op::Add | Op::AddN(_) => items.reduce(|a, b| self.sum(a, b))?,
-                Op::Subtract => {
-                    let (a, b) = (items.next()?, items.next()?);
-                    let b = self.multiple(b, -1.0);
-                    self.sum(a, b)
-                }
+                Op::Add(_) => items.reduce(|a, b| self.sum(a, b))?,
                 Op::Negate => self.multiple(items.next()?, -1.0),
-                Op::Multiply | Op::MultiplyN(_) => items.reduce(|a, b| {
+                Op::Multiply(_) => items.reduce(|a, b| {
                     let (a, b) = (self.settle(a), self.settle(b));
                     self.product(a, b)
                 })?,
@@ -470,10 +465,10 @@ mod tests {
     #[test]
     fn equal_subexpressions_are_one_node() {
         // sin(xy) · y / sin(xy), where slots 0 and 1 are x and y
-        let product = [Op::Var(0), Op::Var(1), Op::Multiply];
+        let product = [Op::Var(0), Op::Var(1), Op::Multiply(2)];
         let sine = [Op::Call(Function::Sin, 1)];
         let mut ops: Vec<Op> = product.iter().chain(&sine).copied().collect();
-        ops.extend([Op::Var(1), Op::Multiply]);
+        ops.extend([Op::Var(1), Op::Multiply(2)]);
         ops.extend(product.iter().chain(&sine));
         ops.push(Op::Divide);
         let kernel = Kernel {

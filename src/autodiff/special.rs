@@ -247,11 +247,12 @@ pub struct Jet {
 
 impl Jet {
     const fn constant(v: f64) -> Self {
-        Self {
-            v,
-            d: [0.0; 2],
-            dd: [0.0; 3],
-        }
+        Self::parameter(v, [0.0; 2])
+    }
+
+    /// A parameter itself: the first or the second.
+    const fn parameter(v: f64, d: [f64; 2]) -> Self {
+        Self { v, d, dd: [0.0; 3] }
     }
 
     fn chain(self, f: f64, df: f64, ddf: f64) -> Self {
@@ -360,11 +361,7 @@ pub fn gamma_reg(a: f64, x: f64) -> Jet {
         let mut term = Jet::constant(1.0);
         let mut sum = term;
         for n in 1..MAX_TERMS {
-            let shifted = Jet {
-                v: a + n as f64,
-                d: [1.0, 0.0],
-                dd: [0.0; 3],
-            };
+            let shifted = Jet::parameter(a + n as f64, [1.0, 0.0]);
             term = term * shifted.recip().scale(x);
             sum = sum + term;
             if sum.settled(term) {
@@ -380,11 +377,7 @@ pub fn gamma_reg(a: f64, x: f64) -> Jet {
         dd: [-trigamma(a), 0.0, 0.0],
     }
     .exp();
-    let jet_a = Jet {
-        v: a,
-        d: [1.0, 0.0],
-        dd: [0.0; 3],
-    };
+    let jet_a = Jet::parameter(a, [1.0, 0.0]);
     let mut b = jet_a.complement() + Jet::constant(x);
     let mut c = Jet::constant(1e280);
     let mut d = b.recip();
@@ -451,18 +444,8 @@ pub fn beta_reg(x: f64, a: f64, b: f64) -> Jet {
 
 /// I_x(a, b) by the continued fraction; y = 1 − x.
 fn beta_fraction(x: f64, y: f64, a: f64, b: f64) -> Jet {
-    let (ja, jb) = (
-        Jet {
-            v: a,
-            d: [1.0, 0.0],
-            dd: [0.0; 3],
-        },
-        Jet {
-            v: b,
-            d: [0.0, 1.0],
-            dd: [0.0; 3],
-        },
-    );
+    let ja = Jet::parameter(a, [1.0, 0.0]);
+    let jb = Jet::parameter(b, [0.0, 1.0]);
     let lny = if x < 0.5 { (-x).ln_1p() } else { y.ln() };
     let (psi, psi1) = (digamma(a + b), trigamma(a + b));
     let front = Jet {

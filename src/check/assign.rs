@@ -314,7 +314,6 @@ fn distance(p: &Part) -> Option<&Node> {
 fn as_far(a: Option<&Node>, b: Option<&Node>) -> bool {
     let unsigned = |n: &'_ Node| match &n.kind {
         NodeKind::Sum(terms) if terms.len() == 1 => terms[0].1.clone(),
-        NodeKind::Negate(n) => (**n).clone(),
         _ => n.clone(),
     };
     let (Some(a), Some(b)) = (a.map(unsigned), b.map(unsigned)) else {

@@ -1,9 +1,8 @@
 //! Dates as numbers: days since 1899-12-31, with the time of day as fraction (jdate(1900,1,1) = 1).
 
 use super::node::DataFunction;
-use jiff::civil::{Date, date};
-
-const EPOCH: Date = date(1899, 12, 31);
+use crate::host::{EPOCH, date_of};
+use jiff::civil::Date;
 
 /// The days that have a number: of the years 1 to 9999.
 const DAYS: std::ops::RangeInclusive<f64> = -693_594.0..=2_958_464.0;
@@ -24,9 +23,7 @@ pub fn part(f: DataFunction, x: f64) -> Option<f64> {
     if !DAYS.contains(&days) {
         return None;
     }
-    let d = EPOCH
-        .checked_add(jiff::Span::new().try_days(days as i64).ok()?)
-        .ok()?;
+    let d = date_of(days)?;
     let milliseconds = ((x - days) * 86_400_000.0).round();
     Some(match f {
         D::GYear => f64::from(d.year()),

@@ -8,7 +8,7 @@ use super::symbols::{DomainPosition, SymbolKind, UNIVERSE};
 use super::{Checked, Compiler};
 use crate::diag::Diagnostic;
 use crate::source::Span;
-use crate::syntax::ast::{self, Expr, ExprKind, Ident, Sign};
+use crate::syntax::ast::{self, Expr, ExprKind, Ident};
 
 impl Compiler {
     /// What a set that is under control stands for: running indices, or what pins it, `loop(i('a'), …)`.
@@ -304,7 +304,7 @@ impl Compiler {
             }
             let base = match &index.kind {
                 ExprKind::Sum(terms) => match terms.first() {
-                    Some((Sign::Plus, base)) => Some(base),
+                    Some((false, base)) => Some(base),
                     _ => None,
                 },
                 ExprKind::Binary(BinaryOp::CircularPlus | BinaryOp::CircularMinus, base, _) => {

@@ -79,7 +79,6 @@ impl Compiler {
                 unless.extend(self.one_turn(&[a.clone(), b.clone()], n.span));
                 Some(unless)
             }
-            NodeKind::Negate(a) => self.resting(a, own),
             NodeKind::Sum(list) => self.together(list.iter().map(|(_, t)| t), own),
             NodeKind::Product(list) => {
                 let special =
@@ -331,13 +330,13 @@ fn driven<'b>(body: &'b [Code], around: &Around, out: &mut Found<'b>) -> bool {
             true
         }
         CodeKind::Break(..)
-        | CodeKind::Continue(_)
+        | CodeKind::Continue
         | CodeKind::Option(..)
         | CodeKind::Format(..)
         | CodeKind::Clear(..)
         | CodeKind::Match(..)
         | CodeKind::Project { .. } => {
-            out.others |= !matches!(c.kind, CodeKind::Continue(_));
+            out.others |= !matches!(c.kind, CodeKind::Continue);
             if around.conditional {
                 out.assigned.push(Assigned {
                     value: None,

@@ -85,7 +85,7 @@ impl Visitor<'_> for Changes<'_> {
             | CodeKind::Repeat(..)
             | CodeKind::If(..)
             | CodeKind::Break(..)
-            | CodeKind::Continue(_)
+            | CodeKind::Continue
             | CodeKind::Display(..)
             | CodeKind::Abort(..)
             | CodeKind::Option(..)

@@ -8,7 +8,7 @@ use crate::data::value;
 use crate::diag::{Diagnostic, nearest};
 use crate::model::instance::Function;
 use crate::source::Span;
-use crate::syntax::ast::{BinaryOp, Expr, ExprKind, Factor, Ident, Sign, UnaryOp};
+use crate::syntax::ast::{BinaryOp, Expr, ExprKind, Ident, UnaryOp};
 
 /// Builds a node of children: whether variables stand in it, and whether it is linear if they do.
 fn combine(kind: NodeKind, span: Span, has_var: bool, linear: bool) -> Node {
@@ -122,7 +122,7 @@ impl Compiler {
                     (UnaryOp::Minus, NodeKind::Const(x)) if !x.is_nan() => Node::number(-x, span),
                     (UnaryOp::Minus, _) => {
                         let (v, l) = (a.has_var, a.linear);
-                        combine(NodeKind::Negate(Box::new(a)), span, v, l)
+                        combine(NodeKind::Sum(vec![(true, a)]), span, v, l)
                     }
                     (UnaryOp::Not, _) => {
                         let v = a.has_var;
@@ -135,15 +135,18 @@ impl Compiler {
             ExprKind::Sum(terms) => {
                 let nodes: Vec<_> = terms.iter().map(|(_, t)| self.expr(t)).collect();
                 let signed = terms.iter().zip(nodes);
-                let signed = signed.map(|((sign, _), n)| Ok((*sign == Sign::Minus, n?)));
+                let signed = signed.map(|((minus, _), n)| Ok((*minus, n?)));
                 self.sum(signed.collect::<Checked<_>>()?, span)
             }
             ExprKind::Product(factors) => {
                 let nodes: Vec<_> = factors.iter().map(|(_, x)| self.expr(x)).collect();
-                let factors = factors.iter().zip(nodes).map(|((f, x), node)| match f {
-                    Factor::Divide => Ok(divisor(x, node?)),
-                    Factor::Multiply => Ok((false, node?)),
-                });
+                let factors = factors
+                    .iter()
+                    .zip(nodes)
+                    .map(|((divides, x), node)| match divides {
+                        true => Ok(divisor(x, node?)),
+                        false => Ok((false, node?)),
+                    });
                 self.product(factors.collect::<Checked<_>>()?, span)
             }
             ExprKind::Binary(BinaryOp::Divide, a, right) => {

@@ -8,7 +8,7 @@ use super::symbols::{DomainPosition, SymbolKind, UNIVERSE};
 use super::{Checked, Compiler, Failed};
 use crate::diag::{Diagnostic, Severity, nearest};
 use crate::source::Span;
-use crate::syntax::ast::{Expr, ExprKind, Ident, Sign};
+use crate::syntax::ast::{Expr, ExprKind, Ident};
 use std::sync::Arc;
 
 impl Compiler {
@@ -521,7 +521,9 @@ impl Compiler {
                 let offset = self.expr(offset)?;
                 let span = offset.span;
                 let offset = match op {
-                    BinaryOp::CircularMinus => Node::data(NodeKind::Negate(Box::new(offset)), span),
+                    BinaryOp::CircularMinus => {
+                        Node::data(NodeKind::Sum(vec![(true, offset)]), span)
+                    }
                     _ => offset,
                 };
                 (offset, true)
@@ -535,8 +537,8 @@ impl Compiler {
                         .fail(self);
                 }
                 let mut offset = Vec::new();
-                for (sign, t) in &terms[1..] {
-                    offset.push((*sign == Sign::Minus, self.expr(t)?));
+                for (minus, t) in &terms[1..] {
+                    offset.push((*minus, self.expr(t)?));
                 }
                 let offset = match offset.len() {
                     1 if !offset[0].0 => offset.remove(0).1,

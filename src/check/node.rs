@@ -125,11 +125,9 @@ pub enum NodeKind {
     SameAs(Part, Part),
     /// A property of a label within a set: `i.val`, `i.pos` …
     LabelAttribute(LabelAttribute, TableId, Part),
-    /// `-a`
-    Negate(Box<Node>),
     /// `not a`
     Not(Box<Node>),
-    /// Terms; true for those that are subtracted.
+    /// Terms; true for those that are subtracted. There may be one alone: `-a`.
     Sum(Vec<(bool, Node)>),
     /// Factors; true for those that divide.
     Product(Vec<(bool, Node)>),
@@ -455,13 +453,13 @@ pub enum CodeKind {
     /// `if`
     If(Vec<(Node, Vec<Code>)>, Vec<Code>),
     /// `break`
-    Break(Option<Node>, u32),
+    Break(u32),
     /// `continue`
-    Continue(Option<Node>),
+    Continue,
     /// `display`
-    Display(Option<Node>, Vec<Shown>),
-    /// `abort`: condition, what to show, `abort.noError`
-    Abort(Option<Node>, Vec<Shown>, bool),
+    Display(Vec<Shown>),
+    /// `abort`: what to show, `abort.noError`
+    Abort(Vec<Shown>, bool),
     /// `solve`
     Solve(Box<SolveCode>),
     /// `option name = value`
@@ -485,8 +483,8 @@ pub enum CodeKind {
     Permute(SymbolId, [TableId; 2]),
     /// `option m(i:j,k)`: sets that are matched with what stands before (true), or multiplied out.
     Match(SymbolId, Vec<(bool, TableId)>),
-    /// `put` and its kin: keyword, condition, items.
-    Put(Box<str>, Option<Node>, Vec<PutCode>),
+    /// `put` and its kin: keyword, items.
+    Put(Box<str>, Vec<PutCode>),
     /// Data exchange.
     Exchange(crate::syntax::ast::Exchange),
     /// `draw`

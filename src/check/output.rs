@@ -5,7 +5,7 @@ use super::symbols::SymbolKind;
 use super::{Checked, Compiler, Failed, functions};
 use crate::diag::Diagnostic;
 use crate::source::Span;
-use crate::syntax::ast::{DisplayItem, Expr, ExprKind, Ident, Put, PutItem};
+use crate::syntax::ast::{DisplayItem, Expr, ExprKind, Ident, PutItem};
 
 /// `` `x`, `y` ``
 fn listed(names: &[(Ident, String)]) -> String {
@@ -97,10 +97,14 @@ impl Compiler {
         Ok(out)
     }
 
-    pub(super) fn put(&mut self, p: &Put, span: Span) -> Checked<CodeKind> {
-        let condition = self.optional(p.condition.as_ref())?;
+    pub(super) fn put(
+        &mut self,
+        keyword: &str,
+        items: &[PutItem],
+        span: Span,
+    ) -> Checked<CodeKind> {
         self.texts_allowed = true;
-        let r = self.put_items(&p.items);
+        let r = self.put_items(items);
         self.texts_allowed = false;
         if let Ok(items) = &r {
             let named = items.iter().rev().find_map(|i| match i {
@@ -108,7 +112,7 @@ impl Compiler {
                 _ => None,
             });
             self.put_named = named.or(self.put_named);
-            if self.put_named.is_none() && !p.keyword.starts_with("put_util") {
+            if self.put_named.is_none() && !keyword.starts_with("put_util") {
                 if self.lacks_something() {
                     return Err(Failed);
                 }
@@ -119,7 +123,7 @@ impl Compiler {
                     .fail(self);
             }
         }
-        Ok(CodeKind::Put(p.keyword.clone(), condition, r?))
+        Ok(CodeKind::Put(keyword.into(), r?))
     }
 
     fn put_items(&mut self, items: &[PutItem]) -> Checked<Vec<PutCode>> {

@@ -130,16 +130,15 @@ impl Compiler {
                 }
                 CodeKind::If(checked, self.body(otherwise, map)?)
             }
-            StmtKind::Break(c, loops) => CodeKind::Break(self.optional(c.as_ref())?, *loops),
-            StmtKind::Continue(c) => CodeKind::Continue(self.optional(c.as_ref())?),
-            StmtKind::Display(c, items) => {
+            StmtKind::Break(loops) => CodeKind::Break(*loops),
+            StmtKind::Continue => CodeKind::Continue,
+            StmtKind::Display(items) => {
                 span = from_first_item(items, span);
-                CodeKind::Display(self.optional(c.as_ref())?, self.shown(items)?)
+                CodeKind::Display(self.shown(items)?)
             }
-            StmtKind::Abort(c, items, no_error) => {
+            StmtKind::Abort(items, no_error) => {
                 span = from_first_item(items, span);
-                let condition = self.optional(c.as_ref())?;
-                CodeKind::Abort(condition, self.shown(items)?, *no_error)
+                CodeKind::Abort(self.shown(items)?, *no_error)
             }
             StmtKind::Option(items) => {
                 for item in items {
@@ -149,7 +148,7 @@ impl Compiler {
                 }
                 return Ok(());
             }
-            StmtKind::Put(p) => self.put(p, span)?,
+            StmtKind::Put(keyword, items) => self.put(keyword, items, span)?,
             StmtKind::Exchange(x) => {
                 let keyword = x.keyword.name.to_lowercase();
                 let loads = keyword.contains("load") && !keyword.contains("unload");

@@ -106,7 +106,7 @@ impl Node {
                 v.part(b);
             }
             NodeKind::LabelText(p) => v.part(p),
-            NodeKind::Negate(a) | NodeKind::Not(a) => v.node(a),
+            NodeKind::Not(a) => v.node(a),
             NodeKind::Sum(list) | NodeKind::Product(list) => {
                 list.iter().for_each(|(_, x)| v.node(x));
             }
@@ -152,7 +152,7 @@ impl Node {
             | NodeKind::Card(_)
             | NodeKind::SameAs(..)
             | NodeKind::LabelText(_) => {}
-            NodeKind::Negate(a) | NodeKind::Not(a) => a.change(f),
+            NodeKind::Not(a) => a.change(f),
             NodeKind::Sum(list) | NodeKind::Product(list) => {
                 list.iter_mut().for_each(|(_, x)| x.change(f));
             }
@@ -206,15 +206,12 @@ impl Code {
                 }
                 otherwise.iter().for_each(|c| v.code(c));
             }
-            CodeKind::Break(condition, _)
-            | CodeKind::Continue(condition)
-            | CodeKind::Display(condition, _)
-            | CodeKind::Abort(condition, ..) => condition.iter().for_each(|c| v.guard(c)),
-            CodeKind::Put(_, condition, items) => {
-                condition.iter().for_each(|c| v.guard(c));
-                items.iter().for_each(|i| i.walk(v));
-            }
-            CodeKind::Solve(_)
+            CodeKind::Put(_, items) => items.iter().for_each(|i| i.walk(v)),
+            CodeKind::Break(_)
+            | CodeKind::Continue
+            | CodeKind::Display(_)
+            | CodeKind::Abort(..)
+            | CodeKind::Solve(_)
             | CodeKind::Option(..)
             | CodeKind::Clear(..)
             | CodeKind::Format(..)

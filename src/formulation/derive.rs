@@ -8,6 +8,7 @@ use super::tree::*;
 use super::{Formulation, Multiplier, NewData, Origin, Scope, Sign};
 use crate::check::node::SymbolId;
 use crate::check::symbols::{DomainPosition, SymbolKind, Symbols, UNIVERSE};
+use crate::data::universe::Label;
 use crate::run::Generated;
 use crate::syntax::ast::{ModelItem, VariableKind};
 use rustc_hash::FxHashSet;
@@ -140,20 +141,34 @@ impl<'a> Derivation<'a> {
             let relation = |i: &u32| &g.instance.rows.relation[*i as usize];
             let binding = (b.start..b.start + b.len).filter(|i| binds(relation(i)));
             let name = self.scope.get(e.symbol).name.to_string();
-            let unique = self.fresh(&format!("binding_{name}"));
-            self.out.data.push(NewData {
-                name: unique,
-                text: format!("rows of {name} with a finite right side"),
-                domain: domain_of(self.scope.symbols, e.symbol),
-                is_set: !e.key.is_empty(),
-                records: binding.map(|i| (b.key(i).to_vec(), 1.0)).collect(),
-            });
-            let number = self.out.data.len() - 1;
-            let inside = match e.key.is_empty() {
-                true => Expr::Data(Source::New(number), Vec::new()),
-                false => Expr::NewMember(number, e.key.clone()),
-            };
+            let text = format!("rows of {name} with a finite right side");
+            let keys = binding.map(|i| b.key(i).to_vec()).collect();
+            let inside = self.new_set(&format!("binding_{name}"), text, e.symbol, keys, &e.key);
             self.binders[k].conditions.push(inside);
+        }
+    }
+
+    /// Introduces a set of records of a symbol (a number where it has no indices): the condition that a key is in it.
+    pub(super) fn new_set(
+        &mut self,
+        name: &str,
+        text: String,
+        of: SymbolId,
+        keys: Vec<Vec<Label>>,
+        key: &[Part],
+    ) -> Expr {
+        let name = self.fresh(name);
+        self.out.data.push(NewData {
+            name,
+            text,
+            domain: domain_of(self.scope.symbols, of),
+            is_set: !key.is_empty(),
+            records: keys.into_iter().map(|k| (k, 1.0)).collect(),
+        });
+        let number = self.out.data.len() - 1;
+        match key {
+            [] => Expr::Data(Source::New(number), Vec::new()),
+            key => Expr::NewMember(number, key.to_vec()),
         }
     }
 
@@ -446,15 +461,7 @@ impl<'a> Derivation<'a> {
             return None;
         }
         let keys = self.columns(v).keys(places);
-        let name = self.fresh(name);
-        self.out.data.push(NewData {
-            name,
-            text,
-            domain: domain_of(self.scope.symbols, v),
-            is_set: true,
-            records: keys.into_iter().map(|k| (k, 1.0)).collect(),
-        });
-        Some(Expr::NewMember(self.out.data.len() - 1, row.key()))
+        Some(self.new_set(name, text, v, keys, &row.key()))
     }
 
     /// The constants of an equation on its right side.

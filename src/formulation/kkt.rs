@@ -164,20 +164,10 @@ fn feasibility(d: &mut Derivation, k: usize, keep: bool) {
     let rows: Vec<u32> = (block.start..block.start + block.len).collect();
     let mut binder = d.binders[k].clone();
     if d.primal.tuples[k] != rows.len() {
-        let name = d.fresh(&format!("rows_{name}"));
-        d.out.data.push(NewData {
-            name,
-            text: format!(
-                "rows of {} that hold a variable",
-                d.scope.get(e.symbol).name
-            ),
-            domain: domain_of(d.scope.symbols, e.symbol),
-            is_set: true,
-            records: rows.iter().map(|&i| (block.key(i).to_vec(), 1.0)).collect(),
-        });
-        binder
-            .conditions
-            .push(Expr::NewMember(d.out.data.len() - 1, e.key.clone()));
+        let text = format!("rows of {name} that hold a variable");
+        let keys = rows.iter().map(|&i| block.key(i).to_vec()).collect();
+        let inside = d.new_set(&format!("rows_{name}"), text, e.symbol, keys, &e.key);
+        binder.conditions.push(inside);
     }
     // Of a maximum the function of the row is what is left over, unless the multiplier has the opposite sign.
     let (left, right, relation) = match d.is_minimum() != d.out.flipped {

@@ -197,7 +197,6 @@ impl<'a> Lowering<'a> {
             NodeKind::LabelAttribute(a, t, p) => {
                 Expr::LabelAttribute(*a, self.set(*t), self.part(p))
             }
-            NodeKind::Negate(a) => negate(self.expr(a)),
             NodeKind::Not(a) => Expr::Not(Box::new(self.expr(a))),
             NodeKind::Sum(t) => sum(t.iter().map(|(m, e)| (*m, self.expr(e))).collect()),
             NodeKind::Product(t) => {

@@ -82,14 +82,11 @@ fn term(g: &Generated, k: &Kernel, t: KernelTerm, number: &dyn Fn(f64) -> Expr) 
                     .chain([(false, constant(first))]);
                 sum(all.collect())
             }
-            Op::Add | Op::AddN(_) => sum(args.into_iter().map(|e| (false, e)).collect()),
-            Op::Multiply | Op::MultiplyN(_) => {
-                product(args.into_iter().map(|e| (false, e)).collect())
-            }
+            Op::Add(_) => sum(args.into_iter().map(|e| (false, e)).collect()),
+            Op::Multiply(_) => product(args.into_iter().map(|e| (false, e)).collect()),
             Op::Negate => negate(args.remove(0)),
             Op::Call(f, _) => Expr::Call(f, args),
             Op::PowerInt(n) => power(args.remove(0), Expr::Number(f64::from(n))),
-            Op::Subtract => args.remove(0) - args.remove(0),
             Op::Divide => args.remove(0) / args.remove(0),
             Op::Power => power(args.remove(0), args.remove(0)),
         };

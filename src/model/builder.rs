@@ -97,9 +97,9 @@ impl Term {
         }
     }
 
-    fn then(mut self, other: impl Into<Self>, op: Op) -> Self {
+    fn then(mut self, other: impl Into<Self>, ops: &[Op]) -> Self {
         self.append(other.into());
-        self.ops.push(op);
+        self.ops.extend(ops);
         self
     }
 }
@@ -111,24 +111,24 @@ impl From<f64> for Term {
 }
 
 macro_rules! operators {
-    ($($name:ident $method:ident $op:expr),*) => {$(
+    ($($name:ident $method:ident $ops:expr),*) => {$(
         impl<T: Into<Term>> $name<T> for Term {
             type Output = Term;
             fn $method(self, other: T) -> Term {
-                self.then(other, $op)
+                self.then(other, &$ops)
             }
         }
 
         impl $name<Term> for f64 {
             type Output = Term;
             fn $method(self, other: Term) -> Term {
-                Term::constant(self).then(other, $op)
+                Term::constant(self).then(other, &$ops)
             }
         }
     )*};
 }
 
-operators!(Add add Op::Add, Sub sub Op::Subtract, Mul mul Op::Multiply, Div div Op::Divide);
+operators!(Add add [Op::Add(2)], Sub sub [Op::Negate, Op::Add(2)], Mul mul [Op::Multiply(2)], Div div [Op::Divide]);
 
 impl Neg for Term {
     type Output = Term;

@@ -193,16 +193,10 @@ pub enum Op {
     Const(u32),
     /// Pushes `const[k] + sum_{m<n} const[k+1+m]·var[v+m]`, an affine form: k, v and n.
     Affine(u32, u32, u32),
-    /// Pops b, a; pushes a + b.
-    Add,
     /// Pops n values; pushes their sum.
-    AddN(u32),
-    /// Pops b, a; pushes a − b.
-    Subtract,
-    /// Pops b, a; pushes a · b.
-    Multiply,
+    Add(u32),
     /// Pops n values; pushes their product.
-    MultiplyN(u32),
+    Multiply(u32),
     /// Pops b, a; pushes a / b.
     Divide,
     /// Pops a; pushes −a.
@@ -221,8 +215,8 @@ impl Op {
         match self {
             Self::Var(_) | Self::Const(_) | Self::Affine(..) => 0,
             Self::Negate | Self::PowerInt(_) => 1,
-            Self::Add | Self::Subtract | Self::Multiply | Self::Divide | Self::Power => 2,
-            Self::AddN(n) | Self::MultiplyN(n) | Self::Call(_, n) => n as usize,
+            Self::Divide | Self::Power => 2,
+            Self::Add(n) | Self::Multiply(n) | Self::Call(_, n) => n as usize,
         }
     }
 

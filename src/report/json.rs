@@ -103,25 +103,18 @@ pub struct Status<S> {
     pub name: &'static str,
 }
 
-impl From<ModelStatus> for Status<ModelStatus> {
-    fn from(status: ModelStatus) -> Self {
-        Self {
-            status,
-            code: status as u8,
-            name: status.name(),
+macro_rules! statuses {
+    ($($of:ty),*) => {$(
+        impl From<$of> for Status<$of> {
+            fn from(status: $of) -> Self {
+                let (code, name) = (status as u8, status.name());
+                Self { status, code, name }
+            }
         }
-    }
+    )*};
 }
 
-impl From<SolverStatus> for Status<SolverStatus> {
-    fn from(status: SolverStatus) -> Self {
-        Self {
-            status,
-            code: status as u8,
-            name: status.name(),
-        }
-    }
-}
+statuses!(ModelStatus, SolverStatus);
 
 /// A search over discrete columns.
 #[derive(Clone, Debug, Serialize)]

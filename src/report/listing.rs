@@ -298,25 +298,24 @@ fn algebra(terms: &KernelTerms, t: usize, names: &dyn Names) -> String {
                 }
                 (text, 1)
             }
-            Op::Add | Op::Subtract | Op::Multiply | Op::Divide | Op::Power => {
+            Op::Divide | Op::Power => {
                 let (b, a) = (pop(), pop());
                 let (sign, left, right, binds) = match op {
-                    Op::Add => (" + ", 1, 2, 1),
-                    Op::Subtract => (" - ", 1, 2, 1),
-                    Op::Multiply => ("*", 2, 3, 2),
                     Op::Divide => ("/", 2, 3, 2),
                     _ => ("**", 4, 4, 3),
                 };
                 (format!("{}{sign}{}", wrap(a, left), wrap(b, right)), binds)
             }
-            Op::AddN(n) | Op::MultiplyN(n) => {
-                let mut parts: Vec<(String, u8)> = (0..n).map(|_| pop()).collect();
-                parts.reverse();
+            Op::Add(n) | Op::Multiply(n) => {
                 let (sign, binds) = match op {
-                    Op::AddN(_) => (" + ", 1),
+                    Op::Add(_) => (" + ", 1),
                     _ => ("*", 2),
                 };
-                let parts: Vec<String> = parts.into_iter().map(|p| wrap(p, binds)).collect();
+                let last = binds + u8::from(n == 2);
+                let mut parts: Vec<String> = (0..n)
+                    .map(|k| wrap(pop(), if k == 0 { last } else { binds }))
+                    .collect();
+                parts.reverse();
                 (parts.join(sign), binds)
             }
             Op::Negate => (format!("-{}", wrap(pop(), 2)), 1),

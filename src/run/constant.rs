@@ -47,7 +47,7 @@ impl Term {
             let zero = |p: &Part| number(p) == Some(0.0);
             let value = match (op, numbers) {
                 (Op::Const(k), _) => Part::Number(self.constants[k as usize]),
-                (Op::Multiply | Op::MultiplyN(_), _) if args.iter().any(zero) => Part::Number(0.0),
+                (Op::Multiply(_), _) if args.iter().any(zero) => Part::Number(0.0),
                 (Op::Divide, None) if zero(&args[0]) => Part::Number(0.0),
                 (Op::Var(_) | Op::Affine(..), _) => {
                     let mut code = Self::default();
@@ -77,9 +77,8 @@ fn value(op: Op, a: &[f64]) -> Result<f64, DomainError> {
         (Op::Power, &[a, b]) => functions::real_power(a, b)?,
         (Op::PowerInt(n), &[a]) => functions::whole_power(a, n)?,
         (Op::Call(f, _), a) => function_value(f, a)?,
-        (Op::Subtract, &[a, b]) => a - b,
         (Op::Negate, &[a]) => -a,
-        (Op::Multiply | Op::MultiplyN(_), a) => a.iter().product(),
+        (Op::Multiply(_), a) => a.iter().product(),
         (_, a) => a.iter().sum(),
     })
 }
@@ -160,15 +159,11 @@ pub(super) fn affine(ops: &[Op], constants: &[f64]) -> Result<Option<Affine>, Do
                     .map(|t| (variable + t, constants[(constant + 1 + t) as usize]))
                     .collect(),
             }),
-            (Op::Add | Op::AddN(_), _) => args
+            (Op::Add(_), _) => args
                 .into_iter()
                 .try_fold(Affine::default(), |s, a| Some(s.plus(a?))),
-            (Op::Subtract, _) => match <[_; 2]>::try_from(args) {
-                Ok([Some(a), Some(b)]) => Some(a.plus(b.scaled(-1.0))),
-                _ => None,
-            },
             (Op::Negate, _) => args.into_iter().flatten().next().map(|a| a.scaled(-1.0)),
-            (Op::Multiply | Op::MultiplyN(_), _) => product(&args),
+            (Op::Multiply(_), _) => product(&args),
             (op @ (Op::Divide | Op::Power | Op::PowerInt(_) | Op::Call(..)), Some(a)) => {
                 Some(Affine::number(value(op, a)?))
             }

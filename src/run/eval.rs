@@ -215,7 +215,6 @@ impl Machine<'_> {
                 }
                 acc
             }
-            NodeKind::Negate(a) => arithmetic::negate(self.no_acronym(self.eval(a, frame), a.span)),
             NodeKind::Not(a) => arithmetic::not(self.eval(a, frame)),
             NodeKind::Binary(BinaryOp::Power, a, b) => {
                 let (a, b) = (self.eval(a, frame), self.eval(b, frame));
@@ -314,12 +313,7 @@ impl Machine<'_> {
     fn aggregate(&self, op: AggregateOp, d: &Domain, body: &Node, frame: &mut Frame) -> f64 {
         let zero_matters = !matches!(op, AggregateOp::Sum | AggregateOp::Sor);
         let plan = self.plan(d, Wanted::nonzero((!zero_matters).then_some(body)));
-        let mut acc = match op {
-            AggregateOp::Sum | AggregateOp::Sor => 0.0,
-            AggregateOp::Prod | AggregateOp::Sand => 1.0,
-            AggregateOp::Smin => f64::INFINITY,
-            AggregateOp::Smax => f64::NEG_INFINITY,
-        };
+        let mut acc = op.of_nothing();
         self.run_plan(d, &plan, frame, &mut |frame| {
             let v = self.eval(body, frame);
             match op {

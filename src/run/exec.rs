@@ -56,10 +56,6 @@ impl Machine<'_> {
         }
     }
 
-    fn holds(&self, c: Option<&Node>, frame: &mut Frame) -> bool {
-        c.is_none_or(|c| truth(self.eval(c, frame)))
-    }
-
     fn statement(&mut self, c: &Code, frame: &mut Frame) -> Flow {
         self.options.at.set(c.span);
         self.take_collected();
@@ -96,25 +92,13 @@ impl Machine<'_> {
                 }
                 return self.block(otherwise, frame);
             }
-            CodeKind::Break(cond, loops) => {
-                if self.holds(cond.as_ref(), frame) {
-                    return Flow::Break(*loops);
-                }
-            }
-            CodeKind::Continue(cond) => {
-                if self.holds(cond.as_ref(), frame) {
-                    return Flow::Continue;
-                }
-            }
-            CodeKind::Display(cond, items) => {
-                if self.holds(cond.as_ref(), frame) {
-                    self.display(items, c.span);
-                }
-            }
-            CodeKind::Abort(condition, items, no_error) => {
+            CodeKind::Break(loops) => return Flow::Break(*loops),
+            CodeKind::Continue => return Flow::Continue,
+            CodeKind::Display(items) => self.display(items, c.span),
+            CodeKind::Abort(items, no_error) => {
                 // Behind a solve that was not made (`bmod list`) an abort judges numbers that are not there.
                 let judges = self.options.list.is_none() || self.report().solves.is_empty();
-                if judges && self.holds(condition.as_ref(), frame) {
+                if judges {
                     return self.abort(items, *no_error, c.span);
                 }
             }
@@ -140,11 +124,7 @@ impl Machine<'_> {
                 self.permute(*target, *numbers, *set, c.span);
             }
             CodeKind::Match(target, sets) => self.match_sets(*target, sets),
-            CodeKind::Put(keyword, cond, items) => {
-                if self.holds(cond.as_ref(), frame) {
-                    self.put(keyword, items, frame, c.span);
-                }
-            }
+            CodeKind::Put(keyword, items) => self.put(keyword, items, frame, c.span),
             CodeKind::Exchange(x) => self.exchange(x, c.span),
             CodeKind::Draw(s, file) => self.draw(*s, file.as_deref(), frame, c.span),
         }

@@ -140,7 +140,7 @@ impl Options {
             return;
         }
         let value = value.to_lowercase();
-        let code = || named_constant(&format!("{name}.{value}"))?.parse().ok();
+        let code = || Some(named_constant(&format!("{name}.{value}"))? as f64);
         let number = value.parse().ok().or_else(|| match value.as_str() {
             "silent" => Some(2.0),
             word => switch(word).map(f64::from).or_else(code),

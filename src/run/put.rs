@@ -6,6 +6,7 @@
 
 use super::{Frame, Machine};
 use crate::check::calendar;
+use crate::check::figure::is_text;
 use crate::check::node::{DataFunction, Node, NodeKind, PutCode, SymbolId, Written};
 use crate::check::symbols::SymbolKind;
 use crate::data::value::{is_eps, number, special_text, truth};
@@ -255,7 +256,7 @@ impl Machine<'_> {
             {
                 Item::Member(truth(self.eval(n, frame)))
             }
-            NodeKind::Dollar(a, c) if is_text(a) => {
+            NodeKind::Dollar(a, c) if says_text(a) => {
                 if !truth(self.eval(c, frame)) {
                     return None;
                 }
@@ -321,14 +322,11 @@ impl Machine<'_> {
     }
 }
 
-fn is_text(n: &Node) -> bool {
-    match &n.kind {
-        NodeKind::Text(_)
-        | NodeKind::LabelText(_)
-        | NodeKind::ElementText(..)
-        | NodeKind::SymbolText(_)
-        | NodeKind::RecordName(..) => true,
-        NodeKind::ObjectAttribute(_, a) => matches!(*a, "tmodstat" | "tsolstat"),
-        _ => false,
-    }
+/// Whether an item is written as a text.
+fn says_text(n: &Node) -> bool {
+    is_text(n)
+        || matches!(
+            n.kind,
+            NodeKind::ObjectAttribute(_, "tmodstat" | "tsolstat")
+        )
 }

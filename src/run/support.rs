@@ -225,7 +225,6 @@ impl<'m, 'h> Analysis<'m, 'h> {
                 self.premise(Premise::Count(*t, count));
                 Some(at_rest(count as f64))
             }
-            NodeKind::Negate(a) => self.together(&[(symbolic, a)], |v| arithmetic::negate(v[0])),
             NodeKind::Not(_) if self.draws => None,
             NodeKind::Not(a) => self.together(&[(false, a)], |v| arithmetic::not(v[0])),
             NodeKind::Sum(terms) => {
@@ -472,7 +471,7 @@ impl<'m, 'h> Analysis<'m, 'h> {
                 Some(Care::Total)
             }
             NodeKind::Ord(..) | NodeKind::Card(_) | NodeKind::SameAs(..) => Some(Care::Total),
-            NodeKind::Negate(a) | NodeKind::Not(a) => self.care(a),
+            NodeKind::Not(a) => self.care(a),
             NodeKind::Sum(t) => self.cares(t.iter().map(|(_, x)| x)),
             NodeKind::Product(t) => {
                 let mut worst = Care::Total;

@@ -28,7 +28,7 @@ pub(crate) fn symmetric_size(
     // What is dense has the factors that it has: n² / 2 numbers.
     let full = 0.5 * (n as f64) * (n as f64);
     if count <= MIN_ANALYSED_ENTRIES || count as f64 > 0.5 * full {
-        return known(full.min(1e9_f64.max(full)), full * n as f64 * 2.0 / 3.0);
+        return known(full, full * n as f64 * 2.0 / 3.0);
     }
     rows.extend(0..n);
     columns.extend(0..n);

@@ -147,10 +147,6 @@ strategies! {
             "linear programs prove that nothing nearby is feasible: again from where the linear rows hold, near the middle between the bounds, or a unit from 0",
             "100 steps",
             "multistart";
-        InteriorDoubt "interior_doubt",
-            "that proof from there as well: the interior point, where it is no node of an integer program",
-            "a run of the interior point",
-            "multistart";
         WidenedRows "widened_rows",
             "rows without multipliers at the solution: the same rows 1e-8 wider",
             "100 steps",

@@ -13,6 +13,7 @@ use super::preprocess::{Ending, Known, Preprocessor};
 use super::variables::Reach;
 use super::{Outcome, embedded_code, passed_over};
 use crate::diag::{Diagnostic, nearest};
+use crate::host::date_of;
 
 /// Length of the word at the start of a text.
 pub(super) fn word_len(text: &str) -> usize {
@@ -109,28 +110,14 @@ pub(super) fn file_name(text: &str) -> &str {
 
 /// `11/21/26` from days since 1899-12-31.
 pub(super) fn date_text(now: f64) -> String {
-    let (y, m, d) = civil(now);
-    format!("{m:02}/{d:02}/{:02}", y.rem_euclid(100))
+    let date = date_of(now).unwrap_or_default();
+    date.strftime("%m/%d/%y").to_string()
 }
 
 /// `09:28:49` from days since 1899-12-31.
 pub(super) fn time_text(now: f64) -> String {
     let s = (now.fract() * 86_400.0).max(0.0) as u32;
     format!("{:02}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60)
-}
-
-/// Year, month, day of a day count (Howard Hinnant, "chrono-compatible low-level date algorithms").
-fn civil(now: f64) -> (i64, i64, i64) {
-    // 1899-12-31 is day -25568 of the Unix epoch.
-    let z = now.floor().clamp(-1e9, 1e9) as i64 - 25_568 + 719_468;
-    let era = z.div_euclid(146_097);
-    let doe = z.rem_euclid(146_097);
-    let yoe = (doe - doe / 1460 + doe / 36_524 - doe / 146_096) / 365;
-    let doy = doe - (365 * yoe + yoe / 4 - yoe / 100);
-    let mp = (5 * doy + 2) / 153;
-    let d = doy - (153 * mp + 2) / 5 + 1;
-    let m = if mp < 10 { mp + 3 } else { mp - 9 };
-    (yoe + era * 400 + i64::from(m <= 2), m, d)
 }
 
 /// Blanks and semicolons may stand between and behind switches: `$offDigit;`.

@@ -109,46 +109,46 @@ impl Line {
     }
 
     fn keep(&self, old: &str, from: usize, to: usize, text: &mut String, out: &mut Vec<Piece>) {
-        let mut at = from;
-        while at < to {
-            let i = self.pieces.partition_point(|p| p.start <= at);
-            let piece = self.pieces[i.saturating_sub(1)];
-            let end = self.pieces.get(i).map_or(old.len(), |p| p.start).min(to);
-            let (lo, hi) = if piece.copied {
-                let lo = piece.lo + (at - piece.start) as u32;
-                (lo, lo + (end - at) as u32)
-            } else {
-                (piece.lo, piece.hi)
-            };
+        for (end, piece) in self.within(old, from, to) {
             out.push(Piece {
                 start: text.len(),
-                lo,
-                hi,
-                copied: piece.copied,
+                ..piece
             });
-            text.push_str(&old[at..end]);
-            at = end;
+            text.push_str(&old[piece.start..end]);
         }
+    }
+
+    /// The pieces of `from..to` of a text, cut there, each with its end.
+    fn within<'l>(
+        &'l self,
+        text: &'l str,
+        from: usize,
+        to: usize,
+    ) -> impl Iterator<Item = (usize, Piece)> + 'l {
+        let mut at = from;
+        std::iter::from_fn(move || {
+            let i = self.pieces.partition_point(|p| p.start <= at);
+            let mut piece = *self.pieces.get(i.saturating_sub(1)).filter(|_| at < to)?;
+            let end = self.pieces.get(i).map_or(text.len(), |p| p.start).min(to);
+            if piece.copied {
+                piece.lo += (at - piece.start) as u32;
+                piece.hi = piece.lo + (end - at) as u32;
+            }
+            piece.start = std::mem::replace(&mut at, end);
+            Some((end, piece))
+        })
     }
 
     /// Appends `from..to` to the expanded text.
     pub(super) fn emit(&self, map: &mut SourceMap, from: usize, to: usize) {
-        let mut at = from;
-        while at < to {
-            let i = self.pieces.partition_point(|p| p.start <= at);
-            let piece = self.pieces[i.saturating_sub(1)];
-            let end = self
-                .pieces
-                .get(i)
-                .map_or(self.text.len(), |p| p.start)
-                .min(to);
-            if piece.copied {
-                let lo = piece.lo + (at - piece.start) as u32;
-                map.push_copy(self.file, lo, lo + (end - at) as u32);
-            } else {
-                map.push_substitute(&self.text[at..end], self.file, piece.lo, piece.hi);
-            }
-            at = end;
+        for (end, piece) in self.within(&self.text, from, to) {
+            match piece.copied {
+                true => map.push_copy(self.file, piece.lo, piece.hi),
+                false => {
+                    let text = &self.text[piece.start..end];
+                    map.push_substitute(text, self.file, piece.lo, piece.hi)
+                }
+            };
         }
     }
 }

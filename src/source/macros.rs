@@ -9,7 +9,7 @@
 
 use std::cell::Cell;
 
-use super::directives::unquoted;
+use super::directives::{unquoted, word_len};
 use super::preprocess::outside_quotes;
 use rustc_hash::FxHashMap;
 
@@ -59,7 +59,7 @@ impl Macros {
     /// `name(a,b) body`, the text after `$macro`. A name that is one already needs leave to be replaced.
     pub(super) fn define(&mut self, text: &str, replace: bool) -> Result<(), String> {
         let text = text.trim_start();
-        let len = word_len(text);
+        let len = name_len(text);
         if len == 0 {
             return Err("a macro needs a name: `$macro name(a,b) text`".into());
         }
@@ -85,7 +85,7 @@ impl Macros {
                     .map(|p| p.trim().to_ascii_lowercase())
                     .collect()
             };
-            if names.iter().any(|p| word_len(p) != p.len() || p.is_empty()) {
+            if names.iter().any(|p| name_len(p) != p.len() || p.is_empty()) {
                 return Err(format!(
                     "the parameters `({list})` of the macro are not names"
                 ));
@@ -134,12 +134,7 @@ impl Macros {
                             Some(to) => {
                                 total += text.len();
                                 if total > LONGEST {
-                                    return Err(MacroError {
-                                        from: i,
-                                        to,
-                                        message: format!("the macro `{name}` grows without end"),
-                                        help: "a macro must not stand in its own body".into(),
-                                    });
+                                    return Err(endless(i, to, &name));
                                 }
                                 found(i, to, text);
                                 i = to;
@@ -150,9 +145,7 @@ impl Macros {
                     _ => i = end,
                 }
             } else if b.is_ascii_digit() {
-                while i < bytes.len() && (bytes[i].is_ascii_alphanumeric() || bytes[i] == b'_') {
-                    i += 1;
-                }
+                i += word_len(&line[i..]);
             } else {
                 i += 1;
             }
@@ -178,13 +171,10 @@ impl Macros {
         };
         self.followed.set(self.followed.get() + 1);
         if depth >= DEEPEST || self.followed.get() > MOST_CALLS {
-            return Err(error(
-                end,
-                format!(
-                    "the macro `{name}` calls itself, or calls are nested more than {DEEPEST} deep"
-                ),
-                "a macro must not stand in its own body",
-            ));
+            let message = format!(
+                "the macro `{name}` calls itself, or calls are nested more than {DEEPEST} deep"
+            );
+            return Err(error(end, message, ITSELF));
         }
         let (to, text) = match &m.parameters {
             None => (end, m.body.clone()),
@@ -221,11 +211,7 @@ impl Macros {
             }
         };
         if text.len() > LONGEST {
-            return Err(error(
-                to,
-                format!("the macro `{name}` grows without end"),
-                "a macro must not stand in its own body",
-            ));
+            return Err(endless(from, to, name));
         }
         // What comes out may hold calls again.
         let mut out = String::with_capacity(text.len());
@@ -238,11 +224,7 @@ impl Macros {
             out.push_str(&s);
             at = t;
             if out.len() > LONGEST {
-                return Err(error(
-                    to,
-                    format!("the macro `{name}` grows without end"),
-                    "a macro must not stand in its own body",
-                ));
+                return Err(endless(from, to, name));
             }
         }
         out.push_str(&text[at..]);
@@ -250,18 +232,24 @@ impl Macros {
     }
 }
 
-/// Length of the name at the start of a text.
-fn word_len(text: &str) -> usize {
-    let b = text.as_bytes();
-    if !b
-        .first()
-        .is_some_and(|c| c.is_ascii_alphabetic() || *c == b'_')
-    {
-        return 0;
+const ITSELF: &str = "a macro must not stand in its own body";
+
+/// The error of a call that makes too long a text.
+fn endless(from: usize, to: usize, name: &str) -> MacroError {
+    MacroError {
+        from,
+        to,
+        message: format!("the macro `{name}` grows without end"),
+        help: ITSELF.into(),
     }
-    b.iter()
-        .position(|c| !c.is_ascii_alphanumeric() && *c != b'_')
-        .unwrap_or(b.len())
+}
+
+/// Length of the name at the start of a text.
+fn name_len(text: &str) -> usize {
+    match text.starts_with(|c: char| c.is_ascii_digit()) {
+        true => 0,
+        false => word_len(text),
+    }
 }
 
 /// The arguments from the parenthesis at `open` on, and the place after the closing one.

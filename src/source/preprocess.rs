@@ -655,12 +655,13 @@ impl<'h> Preprocessor<'h> {
 
     /// What `%name%` stands for at byte `lo` of the present file.
     fn value(&mut self, name: &str, lo: u32) -> Option<String> {
+        let constant = || variables::constant(name).map(|n| n.to_string());
         if name.contains([' ', '-']) {
             // `%solveStat.Capability Problems%`, `%modelStat.Infeasible-No Solution%`
-            return variables::constant(name).map(str::to_owned);
+            return constant();
         }
-        if let Some(v) = self.names.get(name).or_else(|| variables::constant(name)) {
-            return Some(v.to_owned());
+        if let Some(v) = self.names.get(name).map(str::to_owned).or_else(constant) {
+            return Some(v);
         }
         let lower = name.to_ascii_lowercase();
         if let Some(item) = lower.strip_prefix("system.") {

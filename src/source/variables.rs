@@ -106,7 +106,7 @@ impl Variables {
 
 /// The number behind a named constant such as `%modelStat.optimal%`; blanks, `-` and `_` in it say
 /// nothing (`%modelStat.Infeasible-No Solution%`).
-pub(crate) fn constant(name: &str) -> Option<&'static str> {
+pub(crate) fn constant(name: &str) -> Option<usize> {
     #[rustfmt::skip]
     const MODEL_STATUS: &[&str] = &[
         "optimal", "locallyoptimal", "unbounded", "infeasible", "locallyinfeasible", "intermediateinfeasible",
@@ -128,10 +128,6 @@ pub(crate) fn constant(name: &str) -> Option<&'static str> {
     ];
     const SOLVE_OPT: &[&str] = &["replace", "merge", "clear"];
     const HANDLE_STATUS: &[&str] = &["unknown", "running", "ready", "failure"];
-    const NUMBERS: [&str; 20] = [
-        "0", "1", "2", "3", "4", "5", "6", "7", "8", "9", "10", "11", "12", "13", "14", "15", "16",
-        "17", "18", "19",
-    ];
     let name = name.to_ascii_lowercase().replace([' ', '-', '_'], "");
     let (group, member) = name.split_once('.')?;
     let (list, first) = match group {
@@ -157,5 +153,5 @@ pub(crate) fn constant(name: &str) -> Option<&'static str> {
         m => m,
     };
     let i = list.iter().position(|&m| m == member)?;
-    NUMBERS.get(i + first).copied()
+    Some(i + first)
 }

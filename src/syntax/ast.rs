@@ -74,18 +74,19 @@ pub enum StmtKind {
     Repeat(Vec<Stmt>, Expr),
     /// `if(c, … elseif c, … else …);`
     If(Vec<(Expr, Vec<Stmt>)>, Vec<Stmt>),
-    /// `break$c n;` leaves `n` loops (1 where no number stands).
-    Break(Option<Expr>, u32),
-    /// `continue$c;`
-    Continue(Option<Expr>),
-    /// `display$c 'text', p, x.l;`
-    Display(Option<Expr>, Vec<DisplayItem>),
-    /// `abort$c 'text', p;` `no_error` for `abort.noError`.
-    Abort(Option<Expr>, Vec<DisplayItem>, bool),
+    /// `break n;` leaves `n` loops (1 where no number stands).
+    Break(u32),
+    /// `continue;`
+    Continue,
+    /// `display 'text', p, x.l;`
+    Display(Vec<DisplayItem>),
+    /// `abort 'text', p;` true for `abort.noError`.
+    Abort(Vec<DisplayItem>, bool),
     /// `option …;`
     Option(Vec<OptionItem>),
-    /// `put`, `putclose`, `puttl`, `puthd`, `putpage`.
-    Put(Put),
+    /// `put` and its kin: `putclose`, `puttl`, `puthd`, `putpage` … in lower case, and the items; a file symbol comes as an
+    /// `Item` whose expression is a bare name.
+    Put(Box<str>, Vec<PutItem>),
     /// `execute_unload`, `execute_load`, `execute_loadpoint`, `$load`, `$gdxin` …
     Exchange(Exchange),
     /// A statement that is understood and refused or without effect (`execute 'cmd'`): its keyword.
@@ -338,10 +339,10 @@ pub enum ExprKind {
     Unary(UnaryOp, Box<Expr>),
     /// An infix operator.
     Binary(BinaryOp, Box<Expr>, Box<Expr>),
-    /// A chain of two or more terms joined by `+` and `-` (the first has `Plus`).
-    Sum(Vec<(Sign, Expr)>),
-    /// A chain of three or more factors joined by `*` and `/`, left to right (the first has `Multiply`).
-    Product(Vec<(Factor, Expr)>),
+    /// A chain of two or more terms joined by `+` and `-`; true for those that are subtracted.
+    Sum(Vec<(bool, Expr)>),
+    /// A chain of three or more factors joined by `*` and `/`, left to right; true for those that divide.
+    Product(Vec<(bool, Expr)>),
     /// `e $ c`.
     Dollar(Box<Expr>, Box<Expr>),
     /// `sum((i,j)$c, e)` and its kin.
@@ -385,24 +386,6 @@ named! {
     }
 }
 
-/// Sign of a term in a chain.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Sign {
-    /// `+`
-    Plus,
-    /// `-`
-    Minus,
-}
-
-/// How a factor joins a chain.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Factor {
-    /// `*`
-    Multiply,
-    /// `/`
-    Divide,
-}
-
 named! {
     /// Operators over a domain.
     pub enum AggregateOp {
@@ -412,6 +395,18 @@ named! {
         Smax "smax";
         Sand "sand";
         Sor "sor";
+    }
+}
+
+impl AggregateOp {
+    /// Its value where there is nothing to run over.
+    pub fn of_nothing(self) -> f64 {
+        match self {
+            Self::Sum | Self::Sor => 0.0,
+            Self::Prod | Self::Sand => 1.0,
+            Self::Smin => f64::INFINITY,
+            Self::Smax => f64::NEG_INFINITY,
+        }
     }
 }
 
@@ -478,17 +473,6 @@ pub enum OptionValue {
     Number(f64),
     /// A name or a text, with its place.
     Text(Box<str>, Span),
-}
-
-/// `put` and its kin.
-#[derive(Clone, Debug)]
-pub struct Put {
-    /// `put`, `putclose`, `puttl`, `puthd`, `putpage`, `putclear` … in lower case.
-    pub keyword: Box<str>,
-    /// Condition.
-    pub condition: Option<Expr>,
-    /// Items; a file symbol comes as an `Item` whose expression is a bare name.
-    pub items: Vec<PutItem>,
 }
 
 /// `for(k = from to limit by step, …);` as it is written, and as it is checked.

@@ -633,19 +633,10 @@ impl<'a> DataReader<'a> {
         }
         match bytes.get(from) {
             None | Some(b',' | b'\n') => Ok(Tail::None),
-            Some(&q @ (b'\'' | b'"')) => {
-                let rest = &bytes[from + 1..];
-                match memchr::memchr2(q, b'\n', rest) {
-                    Some(n) if rest[n] == q => {
-                        self.at = from + n + 2;
-                        let text = Cow::Borrowed(&self.text[from + 1..from + 1 + n]);
-                        Ok(Tail::Text(text, self.span(from, self.at)))
-                    }
-                    _ => {
-                        let message = "this quote is not closed on its line";
-                        Err(self.error("E0242", from, from + 1, message))
-                    }
-                }
+            Some(b'\'' | b'"') => {
+                self.at = from;
+                let (text, _) = self.label()?;
+                Ok(Tail::Text(Cow::Borrowed(text), self.span(from, self.at)))
             }
             Some(_) => {
                 if from == start && start > 0 && !is_space(bytes[start - 1]) {

@@ -136,10 +136,7 @@ impl Builder<'_, '_> {
         for &(c, r) in pairs {
             let slot = &mut matched[c as usize];
             if let Some(other) = *slot {
-                let name = |blocks: &Blocks, i: u32| {
-                    let block = blocks.of(i);
-                    self.m.record_name(block.symbol, block.key(i))
-                };
+                let name = |blocks, i| self.m.origin_name(blocks, i as usize);
                 let (column, a, b) = (name(columns, c), name(rows, other), name(rows, r));
                 Diagnostic::execution("E0412", self.span)
                     .says(format!(
@@ -173,8 +170,7 @@ impl Builder<'_, '_> {
                 columns.upper[c] = bound;
                 columns.level[c] = bound;
             } else {
-                let block = rows.of(r);
-                let name = self.m.record_name(block.symbol, block.key(r));
+                let name = self.m.origin_name(rows, r as usize);
                 self.not_finite("the constant", &name, self.span);
             }
         }
@@ -201,10 +197,7 @@ impl Builder<'_, '_> {
             .find(|&&(c, r)| empty[r as usize] && !fixed(c))
             .or_else(|| alone.iter().find(|&&(c, _)| !fixed(c)));
         let Some(&(c, r)) = blamed else { return };
-        let name = |blocks: &Blocks, i: u32| {
-            let block = blocks.of(i);
-            self.m.record_name(block.symbol, block.key(i))
-        };
+        let name = |blocks, i| self.m.origin_name(blocks, i as usize);
         let (row, column) = (name(rows, r), name(columns, c));
         let symbol = rows.of(r).symbol;
         let place = self
@@ -361,8 +354,7 @@ impl Builder<'_, '_> {
             let threshold = thresholds.binary_search_by_key(&(i as u32), |t| t.0);
             let lo = threshold.map_or(stored, |k| thresholds[k].1);
             let level = self.instance.columns.level[i];
-            let block = || blocks.of(i as u32);
-            let name = || self.m.record_name(block().symbol, block().key(i as u32));
+            let name = || self.m.origin_name(blocks, i);
             let problem = if lo.is_nan() || up.is_nan() || level.is_nan() || level.is_infinite() {
                 Some(format!(
                     "a bound or the level of {} is not a number",
@@ -380,7 +372,7 @@ impl Builder<'_, '_> {
                 ))
             } else {
                 let kind = self.instance.columns.kind[i];
-                let declared = &self.m.symbols.get(block().symbol).kind;
+                let declared = &self.m.symbols.get(blocks.of(i as u32).symbol).kind;
                 let binary = matches!(declared, SymbolKind::Variable(VariableKind::Binary));
                 broken_kind(kind, binary, lo, up)
                     .map(|rule| format!("{rule}: {} has {lo} … {up}", name()))
@@ -395,9 +387,7 @@ impl Builder<'_, '_> {
             }
             let scale = self.instance.columns.scale[i];
             if !is_scale(scale) {
-                let name = blocks.of(i as u32);
-                let name = self.m.record_name(name.symbol, name.key(i as u32));
-                self.bad_scale(&name, scale);
+                self.bad_scale(&name(), scale);
             }
         }
     }

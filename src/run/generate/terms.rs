@@ -46,7 +46,6 @@ impl Builder<'_, '_> {
                 Some(Err(x)) => row.constant += coef * x,
                 None => {}
             },
-            NodeKind::Negate(a) => self.emit(a, -coef, frame, row),
             NodeKind::Sum(terms) => {
                 for (minus, t) in terms {
                     self.emit(t, if *minus { -coef } else { coef }, frame, row);
@@ -217,10 +216,6 @@ impl Builder<'_, '_> {
             return;
         }
         match &n.kind {
-            NodeKind::Negate(a) => {
-                self.build(a, frame, tape);
-                tape.ops.push(Op::Negate);
-            }
             NodeKind::Not(a) => {
                 self.build(a, frame, tape);
                 tape.ops.push(Op::Call(Function::BoolNot, 1));
@@ -337,7 +332,7 @@ impl Builder<'_, '_> {
             BinaryOp::Xor => Op::Call(Function::BoolXor, 2),
             BinaryOp::Implies => Op::Call(Function::BoolImp, 2),
             BinaryOp::Equivalent => Op::Call(Function::BoolEqv, 2),
-            _ => Op::Add,
+            _ => Op::Add(2),
         });
     }
 
@@ -358,42 +353,19 @@ impl Builder<'_, '_> {
             count += 1;
             m.keep_going()
         });
+        if count == 0 {
+            tape.number(op.of_nothing());
+        }
+        let pairs = count.saturating_sub(1) as usize;
+        let each = |f| std::iter::repeat_n(Op::Call(f, 2), pairs);
         match op {
-            AggregateOp::Sum => {
-                if count == 0 {
-                    tape.number(0.0);
-                }
-                add_n(count, tape);
-            }
-            AggregateOp::Prod => {
-                if count == 0 {
-                    tape.number(1.0);
-                }
-                multiply_n(count, tape);
-            }
-            AggregateOp::Smin | AggregateOp::Smax => {
-                let (f, none) = match op {
-                    AggregateOp::Smin => (Function::Min, f64::INFINITY),
-                    _ => (Function::Max, f64::NEG_INFINITY),
-                };
-                match count {
-                    0 => tape.number(none),
-                    1 => {}
-                    n => tape.ops.push(Op::Call(f, n)),
-                }
-            }
-            AggregateOp::Sand | AggregateOp::Sor => {
-                let (f, none) = match op {
-                    AggregateOp::Sand => (Function::BoolAnd, 1.0),
-                    _ => (Function::BoolOr, 0.0),
-                };
-                if count == 0 {
-                    tape.number(none);
-                }
-                for _ in 1..count {
-                    tape.ops.push(Op::Call(f, 2));
-                }
-            }
+            AggregateOp::Sum => add_n(count, tape),
+            AggregateOp::Prod => multiply_n(count, tape),
+            AggregateOp::Smin if count > 1 => tape.ops.push(Op::Call(Function::Min, count)),
+            AggregateOp::Smax if count > 1 => tape.ops.push(Op::Call(Function::Max, count)),
+            AggregateOp::Smin | AggregateOp::Smax => {}
+            AggregateOp::Sand => tape.ops.extend(each(Function::BoolAnd)),
+            AggregateOp::Sor => tape.ops.extend(each(Function::BoolOr)),
         }
     }
 }
@@ -407,16 +379,14 @@ fn simplified(tape: Term, zero: bool) -> Result<(Option<Affine>, Term), DomainEr
 fn add_n(n: u32, tape: &mut Term) {
     match n {
         0 | 1 => {}
-        2 => tape.ops.push(Op::Add),
-        n => tape.ops.push(Op::AddN(n)),
+        n => tape.ops.push(Op::Add(n)),
     }
 }
 
 fn multiply_n(n: u32, tape: &mut Term) {
     match n {
         0 | 1 => {}
-        2 => tape.ops.push(Op::Multiply),
-        n => tape.ops.push(Op::MultiplyN(n)),
+        n => tape.ops.push(Op::Multiply(n)),
     }
 }
 

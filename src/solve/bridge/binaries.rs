@@ -220,12 +220,9 @@ impl Known {
                     let first = constant(term.constants[c]);
                     terms.fold(first, |p, (&j, &a)| sum(p, &self.column(j, a), 1.0))
                 }
-                (Op::Add | Op::AddN(_), all) => {
-                    all.iter().fold(Polynomial::new(), |p, q| sum(p, q, 1.0))
-                }
-                (Op::Subtract, [a, b]) => sum(a.clone(), b, -1.0),
+                (Op::Add(_), all) => all.iter().fold(Polynomial::new(), |p, q| sum(p, q, 1.0)),
                 (Op::Negate, [a]) => sum(Polynomial::new(), a, -1.0),
-                (Op::Multiply | Op::MultiplyN(_), all) => self.product(all.iter())?,
+                (Op::Multiply(_), all) => self.product(all.iter())?,
                 (Op::Divide, [a, b]) => {
                     let b = number(b).filter(|b| *b != 0.0)?;
                     sum(Polynomial::new(), a, 1.0 / b)
@@ -370,7 +367,7 @@ impl Products {
                 for j in product {
                     term.append(Term::column(j as usize));
                 }
-                term.ops.push(Op::MultiplyN(count));
+                term.ops.push(Op::Multiply(count));
                 self.builder.push_term(row, a, term);
             }
         }

@@ -186,11 +186,10 @@ fn slope(e: &Term, column: u32) -> Slope {
                 });
                 (each.fold(Slope::None, Slope::and), None)
             }
-            (Op::Add | Op::AddN(_) | Op::Call(Function::Max | Function::Min, _), _) => (all, None),
+            (Op::Add(_) | Op::Call(Function::Max | Function::Min, _), _) => (all, None),
             (Op::Call(Function::Exp | Function::Log | Function::Sqrt, _), _) => (all, None),
-            (Op::Subtract, [a, b]) => (a.0.and(b.0.times(-1.0)), None),
             (Op::Negate, [a]) => (a.0.times(-1.0), a.1.map(|v| -v)),
-            (Op::Multiply, &[(s, None), (_, Some(c))] | &[(_, Some(c)), (s, None)]) => {
+            (Op::Multiply(_), &[(s, None), (_, Some(c))] | &[(_, Some(c)), (s, None)]) => {
                 (s.times(c), None)
             }
             (Op::Divide, &[(s, None), (_, Some(c))]) => (s.times(c), None),

@@ -20,7 +20,6 @@ use super::parts::{Parts, expressions, has_kink};
 use crate::autodiff::Evaluator;
 use crate::model::builder::Term;
 use crate::model::instance::{Function, Instance, KernelTerms, Relation};
-use crate::model::problem_type::ProblemType;
 use crate::solve::answer::Answer;
 use crate::solve::backend::{Backend, Reply, Task};
 use crate::solve::certificate::{TOLERANCE, nonlinear::linearise, primal};
@@ -93,10 +92,6 @@ impl Bridge for Epigraph {
 
     fn instance(&self) -> &Instance {
         &self.instance
-    }
-
-    fn using(&self) -> ProblemType {
-        ProblemType::Nlp
     }
 
     /// The multipliers say with which weights the pieces that meet at a kink count: only there are they to be judged.

@@ -13,7 +13,6 @@ use super::builder::Builder;
 use super::parts::{Parts, expressions};
 use crate::autodiff::second_derivatives;
 use crate::model::instance::{Instance, KernelTerms, Relation};
-use crate::model::problem_type::ProblemType;
 use crate::solve::answer::Answer;
 use crate::solve::backend::{Backend, Reply, Task};
 use crate::solve::{Claim, Settings, Strategy};
@@ -126,10 +125,6 @@ impl Bridge for InnerSums {
 
     fn instance(&self) -> &Instance {
         &self.instance
-    }
-
-    fn using(&self) -> ProblemType {
-        ProblemType::Nlp
     }
 
     fn restore(&self, instance: &Instance, answer: &Answer) -> Option<Reply> {

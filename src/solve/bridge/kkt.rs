@@ -89,10 +89,9 @@ impl Bridge for Kkt {
             level: outcome.level[..n].to_vec(),
             row_marginal: signed(&outcome.level[n..]),
             column_marginal: signed(&outcome.column_marginal[..n]),
-            claim: if solved {
-                Claim::Solved
-            } else {
-                Claim::Unfinished
+            claim: match solved {
+                true => Claim::Solved,
+                false => Claim::Unfinished,
             },
             message: (!solved).then(|| unsolved.into()),
             ..outcome.clone()

@@ -15,7 +15,6 @@ use crate::autodiff::Evaluator;
 use crate::model::builder::Term;
 use crate::model::instance::{Instance, Op, Relation};
 use crate::model::outcome::ModelStatus;
-use crate::model::problem_type::ProblemType;
 use crate::solve::answer::Answer;
 use crate::solve::backend::{Backend, Reply, Task};
 use crate::solve::factor_size::symmetric_size;
@@ -135,10 +134,6 @@ impl Bridge for LeastSquares {
 
     fn instance(&self) -> &Instance {
         &self.instance
-    }
-
-    fn using(&self) -> ProblemType {
-        ProblemType::Nlp
     }
 
     fn iterations(&self) -> u64 {

@@ -43,7 +43,9 @@ pub(super) trait Bridge {
     fn instance(&self) -> &Instance;
 
     /// Its problem type.
-    fn using(&self) -> ProblemType;
+    fn using(&self) -> ProblemType {
+        ProblemType::Nlp
+    }
 
     /// What an answer to it says about the original. None: nothing.
     fn restore(&self, original: &Instance, answer: &Answer) -> Option<Reply>;

@@ -151,16 +151,12 @@ impl<'e> Tree<'e> {
                 let slopes = columns[v..v + n].iter().zip(&constants[c + 1..c + 1 + n]);
                 out.linear.extend(slopes.map(|(&j, a)| (j, weight * a)));
             }
-            (Op::Add | Op::AddN(_), all) => all.iter().for_each(|&a| self.split(a, weight, out)),
-            (Op::Subtract, &[a, b]) => {
-                self.split(a, weight, out);
-                self.split(b, -weight, out);
-            }
+            (Op::Add(_), all) => all.iter().for_each(|&a| self.split(a, weight, out)),
             (Op::Negate, &[a]) => self.split(a, -weight, out),
             (Op::Divide, &[a, b]) if self.number(b).is_some_and(|c| c != 0.0) => {
                 self.split(a, weight / self.number(b).unwrap_or(1.0), out);
             }
-            (Op::Multiply | Op::MultiplyN(_), all) => {
+            (Op::Multiply(_), all) => {
                 let numbers = all.iter().filter_map(|&a| self.number(a));
                 let rest: Vec<usize> = all
                     .iter()
@@ -196,7 +192,7 @@ impl<'e> Tree<'e> {
         let op = self.whole.ops[p];
         let size = match op {
             Op::Affine(_, _, terms) => terms as usize,
-            Op::Add | Op::AddN(_) | Op::Subtract => p + 1 - self.begin[p],
+            Op::Add(_) => p + 1 - self.begin[p],
             _ => 0,
         };
         if size >= least {

@@ -60,7 +60,7 @@ const PAIR_TOLERANCE: f64 = 1e-8;
 /// (c₀ + c₁·x)·s
 fn product() -> Kernel {
     Kernel {
-        ops: vec![Op::Affine(0, 0, 1), Op::Var(1), Op::Multiply],
+        ops: vec![Op::Affine(0, 0, 1), Op::Var(1), Op::Multiply(2)],
         variables: 2,
         constants: 2,
     }

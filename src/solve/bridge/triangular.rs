@@ -269,12 +269,9 @@ fn affine(group: &KernelTerms, term: KernelTerm, j: usize, level: &[f64]) -> Opt
                 let ((a, b), weight) = (value(v + m), constant(c + 1 + m));
                 plus(s, (weight * a, weight * b))
             }),
-            (Op::Add | Op::AddN(_), all) => all.iter().fold((0.0, 0.0), |s, &t| plus(s, t)),
-            (Op::Subtract, &[a, b]) => plus(a, (-b.0, -b.1)),
+            (Op::Add(_), all) => all.iter().fold((0.0, 0.0), |s, &t| plus(s, t)),
             (Op::Negate, &[a]) => (-a.0, -a.1),
-            (Op::Multiply | Op::MultiplyN(_), all) => {
-                all.iter().try_fold((1.0, 0.0), |s, &t| times(s, t))?
-            }
+            (Op::Multiply(_), all) => all.iter().try_fold((1.0, 0.0), |s, &t| times(s, t))?,
             (Op::Divide, &[a, b]) => {
                 let by = number(b)?;
                 (divide(a.0, by).ok()?, divide(a.1, by).ok()?)

@@ -20,8 +20,6 @@ pub struct Nonlinear {
     instance: Instance,
     choice: Option<String>,
     settings: Settings,
-    /// The same below the root, where many nodes are infeasible.
-    below: Settings,
     /// Columns that are to be whole in the end.
     integer: Vec<bool>,
     first: Vec<f64>,
@@ -59,12 +57,7 @@ impl Nonlinear {
         let level = &instance.columns.level;
         let kinds = instance.columns.kind.iter();
         let whole = |k: &ColumnKind| *k == ColumnKind::Integer;
-        let mut below = settings.clone();
-        let theirs = settings.option("without").unwrap_or_default();
-        let without = format!("interior_doubt,{theirs}");
-        below.options.push(("without".into(), without));
         Self {
-            below,
             integer: kinds.map(whole).collect(),
             using,
             instance: relaxed,
@@ -106,10 +99,7 @@ impl Nonlinear {
             *x = from[j].max(columns.lower[j]).min(columns.upper[j]);
         }
         let task = Task::new(self.using, &self.instance).by(self.choice.as_deref());
-        let settings = match self.rooted {
-            true => &self.below,
-            false => &self.settings,
-        };
+        let settings = &self.settings;
         let answer = control
             .budget
             .aside(|b| b.within(f64::INFINITY, most, |b| subproblem(&task, settings, b)));

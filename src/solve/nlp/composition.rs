@@ -202,10 +202,9 @@ pub fn composed(term: &Term, columns: &Columns) -> Composed {
                 Composed::affine(u8::from(range.low != range.high), range)
             }
             _ if degree == 0 => Composed::affine(0, range),
-            (Op::Add | Op::AddN(_), all) => sum(all),
-            (Op::Subtract, [a, b]) => a.0.and(b.0.times(-1.0)),
+            (Op::Add(_), all) => sum(all),
             (Op::Negate, [a]) => a.0.times(-1.0),
-            (Op::Multiply | Op::MultiplyN(_), all) => product(all, term, place, other),
+            (Op::Multiply(_), all) => product(all, term, place, other),
             (Op::Divide, [(a, _), (b, _)]) => match (a.number(), b.number()) {
                 (_, Some(b)) if b != 0.0 => a.times(1.0 / b),
                 (Some(a), _) => {

@@ -22,8 +22,8 @@ use super::interior_point_solvers;
 use super::problem::Problem;
 use super::quadratic::Quadratic;
 use super::schedule::{
-    AGREEMENT, CHEAP, DOUBT, ELSEWHERE, ENOUGH, FIRST_ATTEMPT_ITERATIONS, From,
-    MAX_ATTEMPT_ITERATIONS, MIN_ATTEMPT_ITERATIONS, NEAR, OVERHEAD, TIMES,
+    AGREEMENT, CHEAP, ELSEWHERE, ENOUGH, FIRST_ATTEMPT_ITERATIONS, From, MAX_ATTEMPT_ITERATIONS,
+    MIN_ATTEMPT_ITERATIONS, NEAR, OVERHEAD, TIMES,
 };
 use super::slqp::Effort;
 use super::trial::{Trial, clean, polished, residuals_at, tidy, without_noise};
@@ -377,10 +377,7 @@ impl Driver<'_, '_> {
             return Ok(self.finish());
         }
         if self.infeasibility.is_some() {
-            if !self.settings.runs(Strategy::InteriorDoubt) {
-                return Ok(self.finish());
-            }
-            self.attempt_iterations = DOUBT;
+            return Ok(self.finish());
         }
         let before = self.iterations;
         self.attempt(From::Start, &[])?;

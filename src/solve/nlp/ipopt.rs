@@ -239,11 +239,7 @@ unsafe extern "C" fn init(
                 nlp.start_bounds(out(z_l, n), out(z_u, n));
             }
             if init_lambda != 0 {
-                let lambda = out(lambda, m);
-                match &nlp.start_multipliers {
-                    Some(l) => lambda.copy_from_slice(l),
-                    None => lambda.fill(0.0),
-                }
+                nlp.start_rows(out(lambda, m));
             }
         }
         Some(())

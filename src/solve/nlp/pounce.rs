@@ -299,10 +299,7 @@ impl TNLP for Adapter {
             sp.x.copy_from_slice(&nlp.start);
         }
         if sp.init_lambda {
-            match &nlp.start_multipliers {
-                Some(l) => sp.lambda.copy_from_slice(l),
-                None => sp.lambda.fill(0.0),
-            }
+            nlp.start_rows(sp.lambda);
         }
         if sp.init_z {
             nlp.start_bounds(sp.z_l, sp.z_u);

@@ -565,6 +565,14 @@ impl Problem {
         self.derivative_at.as_deref().unwrap_or(&self.start)
     }
 
+    /// Start multipliers of the rows; 0 where nothing is known.
+    pub fn start_rows(&self, lambda: &mut [f64]) {
+        match &self.start_multipliers {
+            Some(l) => lambda.copy_from_slice(l),
+            None => lambda.fill(0.0),
+        }
+    }
+
     /// Start multipliers of the lower and upper bounds; 1 where nothing is known.
     pub fn start_bounds(&self, lower: &mut [f64], upper: &mut [f64]) {
         let Some(reduced) = &self.start_reduced else {

@@ -80,9 +80,8 @@ pub(super) fn operation(op: Op, a: &[Interval], at: &[Interval], constants: &[f6
             let each = (0..terms as usize).map(|m| at[v + m] * constants[c + 1 + m]);
             each.fold(Interval::point(constants[c]), |s, t| s + t)
         }
-        (Op::Add | Op::AddN(_), a) => a.iter().fold(Interval::point(0.0), |s, &t| s + t),
-        (Op::Multiply | Op::MultiplyN(_), a) => a.iter().fold(Interval::point(1.0), |s, &t| s * t),
-        (Op::Subtract, &[a, b]) => a - b,
+        (Op::Add(_), a) => a.iter().fold(Interval::point(0.0), |s, &t| s + t),
+        (Op::Multiply(_), a) => a.iter().fold(Interval::point(1.0), |s, &t| s * t),
         (Op::Negate, &[a]) => -a,
         (Op::PowerInt(k), &[a]) => power(a, k),
         (Op::Divide, &[a, b]) => a * power(b, -1),

@@ -35,8 +35,6 @@ pub(super) enum From {
 /// Iterations that one attempt may take; the first less, for what takes so many is better begun elsewhere.
 pub(super) const MAX_ATTEMPT_ITERATIONS: u64 = 3000;
 pub(super) const FIRST_ATTEMPT_ITERATIONS: u64 = 500;
-/// What a proof that nothing nearby is feasible is doubted for.
-pub(super) const DOUBT: u64 = 100;
 /// Where there is an answer, a search for a better one may take this many at least.
 pub(super) const MIN_ATTEMPT_ITERATIONS: u64 = 50;
 

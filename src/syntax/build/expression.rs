@@ -105,23 +105,16 @@ fn join(left: Node, op: BinaryOp, right: Node) -> Node {
     // Of a chain that grows, and of a new operation.
     let grown = left.depth.max(right.depth + 1);
     let deeper = left.depth.max(right.depth) + 1;
-    let sign = match op {
-        B::Add => Some(Sign::Plus),
-        B::Subtract => Some(Sign::Minus),
-        _ => None,
-    };
-    let factor = |op| match op {
-        B::Multiply => Some(Factor::Multiply),
-        B::Divide => Some(Factor::Divide),
-        _ => None,
-    };
+    let one_of = |op, plain, inverse| [plain, inverse].iter().position(|o| *o == op);
+    let sign = one_of(op, B::Add, B::Subtract).map(|n| n == 1);
+    let factor = |op| one_of(op, B::Multiply, B::Divide).map(|n| n == 1);
     let (kind, depth) = match (left.expr.kind, sign, factor(op)) {
         (ExprKind::Sum(mut terms), Some(sign), _) if left.open => {
             terms.push((sign, right.expr));
             (ExprKind::Sum(terms), grown)
         }
         (kind, Some(sign), _) => {
-            let first = (Sign::Plus, Expr { kind, span: first });
+            let first = (false, Expr { kind, span: first });
             (ExprKind::Sum(vec![first, (sign, right.expr)]), deeper)
         }
         (ExprKind::Product(mut factors), _, Some(second)) if left.open => {
@@ -129,8 +122,8 @@ fn join(left: Node, op: BinaryOp, right: Node) -> Node {
             (ExprKind::Product(factors), grown)
         }
         (ExprKind::Binary(op, a, b), _, Some(second)) if left.open && factor(op).is_some() => {
-            let first = factor(op).unwrap_or(Factor::Multiply);
-            let factors = vec![(Factor::Multiply, *a), (first, *b), (second, right.expr)];
+            let first = factor(op) == Some(true);
+            let factors = vec![(false, *a), (first, *b), (second, right.expr)];
             (ExprKind::Product(factors), grown)
         }
         (kind, ..) => {

@@ -56,19 +56,8 @@ impl Builder<'_> {
                 }
                 Ok(StmtKind::If(branches, otherwise))
             }
-            Rule::break_statement => {
-                let (condition, loops) = self.jump(pair)?;
-                Ok(StmtKind::Break(condition, loops))
-            }
-            Rule::continue_statement => Ok(StmtKind::Continue(self.jump(pair)?.0)),
-            Rule::display_statement => {
-                let (condition, items, _) = self.display(pair)?;
-                Ok(StmtKind::Display(condition, items))
-            }
-            Rule::abort_statement => {
-                let (condition, items, no_error) = self.display(pair)?;
-                Ok(StmtKind::Abort(condition, items, no_error))
-            }
+            Rule::break_statement | Rule::continue_statement => self.jump(pair),
+            Rule::display_statement | Rule::abort_statement => self.display(pair),
             Rule::option_statement => {
                 let items = parts(pair).map(|p| self.option_item(p));
                 Ok(StmtKind::Option(items.collect::<Outcome<_>>()?))
@@ -108,6 +97,14 @@ impl Builder<'_> {
     fn stmt(&self, kind: StmtKind, span: Span) -> Stmt {
         let modes = self.modes.clone();
         Stmt { kind, span, modes }
+    }
+
+    /// A statement, under a condition if there is one: `display$c x;` is `if(c, display x);`.
+    fn under(&self, condition: Option<Expr>, kind: StmtKind, at: Span) -> StmtKind {
+        match condition {
+            None => kind,
+            Some(c) => StmtKind::If(vec![(c, vec![self.stmt(kind, at)])], Vec::new()),
+        }
     }
 
     pub(super) fn reference(&self, pair: Pair<'_, Rule>) -> Outcome<Reference> {
@@ -231,8 +228,9 @@ impl Builder<'_> {
         }))
     }
 
-    /// The condition of `break` and `continue`, and the number of loops.
-    fn jump(&self, pair: Pair<'_, Rule>) -> Outcome<(Option<Expr>, u32)> {
+    /// `break` and `continue`.
+    fn jump(&self, pair: Pair<'_, Rule>) -> Outcome<StmtKind> {
+        let (at, rule) = (self.span(&pair), pair.as_rule());
         let mut condition = None;
         let mut loops = 1;
         for p in parts(pair) {
@@ -250,10 +248,16 @@ impl Builder<'_> {
                 }
             }
         }
-        Ok((condition, loops))
+        let kind = match rule {
+            Rule::break_statement => StmtKind::Break(loops),
+            _ => StmtKind::Continue,
+        };
+        Ok(self.under(condition, kind, at))
     }
 
-    fn display(&self, pair: Pair<'_, Rule>) -> Outcome<(Option<Expr>, Vec<DisplayItem>, bool)> {
+    /// `display` and `abort`.
+    fn display(&self, pair: Pair<'_, Rule>) -> Outcome<StmtKind> {
+        let (at, rule) = (self.span(&pair), pair.as_rule());
         let mut condition = None;
         let mut items = Vec::new();
         let mut no_error = false;
@@ -265,7 +269,11 @@ impl Builder<'_> {
                 _ => items.push(DisplayItem::Symbol(self.reference(p)?)),
             }
         }
-        Ok((condition, items, no_error))
+        let kind = match rule {
+            Rule::display_statement => StmtKind::Display(items),
+            _ => StmtKind::Abort(items, no_error),
+        };
+        Ok(self.under(condition, kind, at))
     }
 
     fn option_item(&self, pair: Pair<'_, Rule>) -> Outcome<OptionItem> {
@@ -414,11 +422,7 @@ impl Builder<'_> {
                 _ => items.push(self.put_value(p, place)?),
             }
         }
-        Ok(StmtKind::Put(Put {
-            keyword,
-            condition,
-            items,
-        }))
+        Ok(self.under(condition, StmtKind::Put(keyword, items), at))
     }
 
     fn put_value(&self, pair: Pair<'_, Rule>, at: Span) -> Outcome<PutItem> {
@@ -491,10 +495,7 @@ impl Builder<'_> {
             file,
             items,
         });
-        Ok(match condition {
-            None => statement,
-            Some(c) => StmtKind::If(vec![(c, vec![self.stmt(statement, at)])], Vec::new()),
-        })
+        Ok(self.under(condition, statement, at))
     }
 
     /// `x`, `x = y`, `p = x.l`, `x.l = p`, `i < p.dim1`.
