@@ -8,17 +8,23 @@
 //! quadratic in it, ½ xᵀHx, falls apart into blocks of columns that no entry of H joins. Each gets a column of its own: tangents of many
 //! small forms say far more than one of their sum (Hijazi, Bonami & Ouorou 2014). Where the columns of a form are 0 whenever a binary
 //! u is, the tangents are those of u·f(x/u) (Frangioni & Gentile 2006); where it is one integer column, lines through neighbouring
-//! integers. An equation that may be relaxed is an inequality here ([`Directions`]).
+//! integers. An equation that may be relaxed is an inequality here ([`Directions`]), and so is a second-order cone (Lobo et al. 1998):
+//!
+//! ```text
+//!     q(x) ≤ y z,   y, z ≥ 0      ⟺      w ≤ y + z,    w ≥ (4 q(x) + (y − z)²)^½
+//! ```
+//!
+//! where q is quadratic, convex and nowhere below 0, and y and z may be the same column.
 //! The new columns come last, so that a point begins with that of the program itself.
 
 use super::builder::Builder;
 use super::direction::Directions;
 use super::parts::{directions, expressions};
-use crate::autodiff::Evaluator;
+use crate::autodiff::{Degree, Evaluator};
 use crate::model::builder::Term;
 use crate::model::instance::{ColumnKind, Instance, Relation};
 use crate::solve::nlp::composition::{Composed, composed};
-use crate::solve::nlp::convex::{Shape, hessian, shape};
+use crate::solve::nlp::convex::{Shape, hessian, is_convex, shape};
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -42,6 +48,9 @@ pub(in crate::solve) struct WithForms {
     pub(in crate::solve) forms: Vec<Form>,
     /// The program with inequalities in place of equations, if there are such.
     pub(in crate::solve) relaxed: Option<Instance>,
+    /// Some forms are norms: of the program's own rows there may be points that satisfy the conditions of first order and are
+    /// not the best, where a square is 0.
+    pub(in crate::solve) has_cones: bool,
 }
 
 /// Entries of a matrix, by positions among the columns of its form.
@@ -51,6 +60,8 @@ type Entries = Vec<(u32, u32, f64)>;
 enum Function {
     /// ½ xᵀHx; both triangles of H.
     Quadratic(Entries),
+    /// (½ x̃ᵀHx̃)^½, where x̃ is x and a 1 behind it; both triangles of H.
+    Norm(Entries),
     /// The only row of an instance in these columns.
     Other(Box<RefCell<Evaluator>>),
 }
@@ -99,6 +110,11 @@ impl Function {
                     .sum();
                 Some(0.5 * sum)
             }
+            Self::Norm(entries) => {
+                let one = |i: u32| x.get(i as usize).unwrap_or(&1.0);
+                let terms = entries.iter().map(|&(i, j, h)| h * one(i) * one(j));
+                Some((0.5 * terms.sum::<f64>()).max(0.0).sqrt())
+            }
             Self::Other(evaluator) => {
                 let mut value = [0.0];
                 evaluator.borrow_mut().rows(x, &mut value).ok()?;
@@ -114,6 +130,12 @@ impl Function {
             Self::Quadratic(entries) => {
                 for &(i, j, h) in entries {
                     slope[i as usize] += h * x[j as usize];
+                }
+            }
+            Self::Norm(entries) => {
+                let value = self.value(x)?;
+                for &(i, j, h) in entries.iter().filter(|e| (e.0 as usize) < x.len()) {
+                    slope[i as usize] += 0.5 * h * x.get(j as usize).unwrap_or(&1.0) / value;
                 }
             }
             Self::Other(evaluator) => {
@@ -267,13 +289,13 @@ struct Split {
     /// The program with columns in their place.
     rest: Instance,
     forms: Vec<Form>,
-    /// See [`WithForms`].
-    relaxed: Option<Instance>,
+    /// What rows are where equations are relaxed, if there are such.
+    relations: Option<Vec<Relation>>,
 }
 
 impl Split {
-    /// None: a term is not known to be convex, or there are too many.
-    fn new(instance: &Instance, switches: &Switches) -> Option<Self> {
+    /// None: a term is not known to be convex, or there are too many. The last columns stand for these forms already.
+    fn new(instance: &Instance, mut forms: Vec<Form>, switches: &Switches) -> Option<Self> {
         let mut builder = Builder::new(instance);
         let mut parts: BTreeMap<usize, Vec<(f64, Term)>> = BTreeMap::new();
         for (row, coefficient, term) in expressions(instance) {
@@ -284,7 +306,6 @@ impl Split {
             parts.entry(row).or_default().extend(nonlinear);
         }
         let (mut direction, mut relations) = (directions(instance), None);
-        let mut forms = Vec::new();
         for (row, parts) in parts {
             let known: Vec<_> = parts
                 .iter()
@@ -324,15 +345,10 @@ impl Split {
                 form.put(row, direction[row], &mut builder, &mut forms);
             }
         }
-        let relaxed = relations.map(|(_, relation)| {
-            let mut relaxed = instance.clone();
-            relaxed.rows.relation = relation;
-            relaxed
-        });
         Some(Self {
             rest: builder.finish_discrete(instance),
             forms,
-            relaxed,
+            relations: relations.map(|r| r.1),
         })
     }
 }
@@ -344,29 +360,127 @@ fn is_whole(instance: &Instance, columns: &[u32]) -> bool {
 
 /// The linear program of a convex one and its forms. None: it is not known to be convex, or cannot be evaluated.
 pub(in crate::solve) fn with_forms(instance: &Instance) -> Option<WithForms> {
-    let known = shape(instance);
     let all_switches = switches(instance, &instance.nonlinear_rows());
-    let split = match known {
+    let known = shape(instance);
+    let (coned, forms) = match known {
         Shape::Linear => return None,
-        Shape::ConvexQuadratic { .. } => None,
-        _ => Some(Split::new(instance, &all_switches)?),
+        Shape::ConvexQuadratic { .. } => return with_squares(instance, Vec::new(), &all_switches),
+        _ => without_cones(instance).unzip(),
     };
-    let Some(split) = split else {
-        return with_squares(instance, Vec::new(), &all_switches);
-    };
+    let (has_cones, program) = (coned.is_some(), coned.as_ref().unwrap_or(instance));
+    let split = Split::new(program, forms.unwrap_or_default(), &all_switches)?;
     let out = match shape(&split.rest) {
         Shape::Linear => WithForms {
             instance: split.rest,
             forms: split.forms,
             relaxed: None,
+            has_cones: false,
         },
         Shape::ConvexQuadratic { .. } => with_squares(&split.rest, split.forms, &all_switches)?,
         _ => return None,
     };
+    let relaxed = split.relations.map(|relation| {
+        let mut relaxed = instance.clone();
+        relaxed.rows.relation = relation;
+        relaxed
+    });
     Some(WithForms {
-        relaxed: split.relaxed,
+        relaxed,
+        has_cones,
         ..out
     })
+}
+
+/// A program with columns of norms in place of its second-order cones, if it has some and no other row that is quadratic and
+/// not convex.
+fn without_cones(instance: &Instance) -> Option<(Instance, Vec<Form>)> {
+    let mut evaluator = Evaluator::new(instance);
+    let degrees = evaluator.degrees();
+    let origin = vec![0.0; instance.column_count()];
+    let (activity, slopes) = evaluator.linearised(&origin).ok()?;
+    let direction = directions(instance);
+    let mut builder = Builder::new(instance);
+    let (mut forms, mut is_cone) = (Vec::new(), vec![false; degrees.len()]);
+    for row in (0..degrees.len()).filter(|&i| degrees[i] == Degree::Quadratic) {
+        let sign = direction[row];
+        let all = hessian(instance, &mut evaluator, row, sign)?;
+        if sign == 0.0 || is_convex(origin.len(), &all, 1.0) {
+            continue;
+        }
+        let constant = sign * (activity[row] - instance.rows.rhs[row]);
+        let linear = slopes[row].iter().map(|&(j, v)| (j, sign * v));
+        let ([y, z], mut form) = cone(instance, &all, linear, constant)?;
+        form.column = builder.columns.push(0.0, f64::INFINITY) as u32;
+        builder.entries.retain(|e| e.0 != row);
+        builder.entries.extend([(row, y, -sign), (row, z, -sign)]);
+        builder.rows.rhs[row] = 0.0;
+        form.put(row, sign, &mut builder, &mut forms);
+        is_cone[row] = true;
+    }
+    for (row, coefficient, term) in expressions(instance).filter(|t| !is_cone[t.0]) {
+        builder.push_term(row, coefficient, term);
+    }
+    (!forms.is_empty()).then(|| (builder.finish_discrete(instance), forms))
+}
+
+/// A cone ½ xᵀHx + gᵀx + c ≤ a y z, all on the left side: y and z, and the norm that is not above y + z.
+fn cone(
+    instance: &Instance,
+    hessian: &[(usize, usize, f64)],
+    linear: impl Iterator<Item = (usize, f64)>,
+    constant: f64,
+) -> Option<([u32; 2], Form)> {
+    let is_curved = |j: usize| hessian.iter().any(|e| (e.0, e.1) == (j, j) && e.2 > 0.0);
+    let (mut curved, sides): (BTreeSet<usize>, BTreeSet<usize>) =
+        hessian.iter().map(|e| e.0).partition(|&j| is_curved(j));
+    let (y, z) = (*sides.first()?, *sides.last()?);
+    let of_sides: Vec<_> = hessian.iter().filter(|e| sides.contains(&e.0)).collect();
+    let a = match of_sides[..] {
+        [e] if e.1 == y => -0.5 * e.2,
+        [e, f] if (e.0, e.1) == (f.1, f.0) => -e.2,
+        _ => return None,
+    };
+    let linear: Vec<(usize, f64)> = linear.filter(|s| s.1 != 0.0).collect();
+    let lower = &instance.columns.lower;
+    let fits = linear.iter().all(|s| curved.contains(&s.0));
+    if !fits || a <= 0.0 || lower[y] < 0.0 || lower[z] < 0.0 {
+        return None;
+    }
+    let sums = curved.len();
+    if y != z {
+        curved.extend([y, z]);
+    }
+    let columns: Vec<usize> = curved.into_iter().collect();
+    let one = columns.len();
+    let place = |j: usize| columns.partition_point(|&k| k < j);
+    let of_x = hessian.iter().filter(|e| !sides.contains(&e.0));
+    let mut entries: Vec<_> = of_x
+        .map(|e| (place(e.0), place(e.1), e.2 * 4.0 / a))
+        .collect();
+    for (j, v) in linear {
+        let v = v * 4.0 / a;
+        entries.extend([(place(j), one, v), (one, place(j), v)]);
+    }
+    entries.push((one, one, 2.0 * constant * 4.0 / a));
+    if !is_convex(one + 1, &entries, 1.0) {
+        return None;
+    }
+    if y != z {
+        let (y, z) = (place(y), place(z));
+        entries.extend([(y, y, 2.0), (z, z, 2.0), (y, z, -2.0), (z, y, -2.0)]);
+    }
+    let narrow = |(i, j, v): (usize, usize, f64)| (i as u32, j as u32, v);
+    let form = Form {
+        column: 0,
+        sums,
+        columns: columns.into_iter().map(|j| j as u32).collect(),
+        function: Function::Norm(entries.into_iter().map(narrow).collect()),
+        at_zero: 0.0,
+        switch: None,
+        whole: false,
+        inside: None,
+    };
+    Some(([y as u32, z as u32], form))
 }
 
 /// The linear program of a convex quadratic one and its forms, after those that stand in it already. None: it cannot be evaluated.
@@ -405,6 +519,7 @@ fn with_squares(
         instance: builder.finish_discrete(instance),
         forms,
         relaxed: None,
+        has_cones: false,
     })
 }
 

@@ -141,18 +141,13 @@ fn search(task: &Task, settings: &Settings, budget: &Budget) -> Result<Reply, So
         false => {
             let mut control = Control::new(budget);
             let inner = Task { instance, ..*task };
-            let mut convex = match task.has_pairs() {
+            let convex = match task.has_pairs() {
                 true => None,
                 false => with_forms(instance),
             };
-            let found = match &mut convex {
+            let found = match convex {
                 Some(convex) => convex_search(&inner, convex, aim, settings, &mut control)?,
-                None => None,
-            };
-            let known = convex.is_some_and(|c| c.relaxed.is_none());
-            let found = match found {
-                Some(found) => found,
-                None => nonlinear_search(&inner, known, aim, settings, &mut control)?,
+                None => nonlinear_search(&inner, false, aim, settings, &mut control)?,
             };
             budget.spend(control.iterations);
             (found, control.iterations)
@@ -373,9 +368,37 @@ fn searched(
     found
 }
 
+/// The search of a convex program: by tangents where that is of use, or else with the nonlinear solver at every node.
+fn convex_search(
+    task: &Task,
+    mut convex: WithForms,
+    aim: Aim,
+    settings: &Settings,
+    control: &mut Control,
+) -> Result<Found, SolveError> {
+    let relaxed = convex.relaxed.take();
+    let instance = relaxed.as_ref().unwrap_or(task.instance);
+    let inner = Task { instance, ..*task };
+    let found = match tangent_search(&inner, &mut convex, aim, settings, control)? {
+        Some(found) => found,
+        None => nonlinear_search(&inner, !convex.has_cones, aim, settings, control)?,
+    };
+    // what a relaxed equation lacks is made up for
+    if let (Some(_), Some(x)) = (&relaxed, &found.x) {
+        let outcome = solution(task, x, settings, control.budget);
+        let value = instance
+            .objective
+            .map_or(0.0, |o| o.sense.sign() * outcome.level[o.column as usize]);
+        if outcome.claim == Claim::Unfinished || !is_same(value, found.value) {
+            return nonlinear_search(task, false, aim, settings, control);
+        }
+    }
+    Ok(found)
+}
+
 /// The search of a convex program by tangents. None: tangents would be many, its relaxation has no best point, or that of
 /// another search is likely to be better.
-fn convex_search(
+fn tangent_search(
     task: &Task,
     convex: &mut WithForms,
     aim: Aim,
@@ -386,10 +409,9 @@ fn convex_search(
     if !small || !settings.runs(Strategy::OuterApproximation) {
         return Ok(None);
     }
-    let instance = convex.relaxed.as_ref().unwrap_or(task.instance);
-    let inner = Task { instance, ..*task };
+    let instance = task.instance;
     let (linear, forms) = (&convex.instance, &mut convex.forms);
-    let (_, nonlinear) = relaxed(&inner, true, aim, settings, control)?;
+    let (_, nonlinear) = relaxed(task, true, aim, settings, control)?;
     let form = Form::new(linear)?;
     let mut tangents = Convex {
         nonlinear,
@@ -400,14 +422,15 @@ fn convex_search(
             .map(|k| *k != ColumnKind::Continuous)
             .collect(),
         forms,
+        has_cones: convex.has_cones,
         numbers: &form.columns,
     };
     let level = &instance.columns.level;
     let (root, begun) = match tangents.best(level, control) {
         Some(Some(root)) => (root, true),
-        Some(None) => return Ok(None),
+        Some(None) if !tangents.has_cones => return Ok(None),
         // tangents where the nonlinear solver began
-        None => (tangents.with_values(level.clone()), false),
+        _ => (tangents.with_values(level.clone()), false),
     };
     let mut mip = Mip::new(form.problem.clone(), linear, &form.columns, aim.priorities);
     tangents.tighten(&mut mip, &root);
@@ -428,16 +451,6 @@ fn convex_search(
     }
     found.keep(instance.column_count());
     found.relaxed = true;
-    // what a relaxed equation lacks is made up for
-    if let (Some(_), Some(x)) = (&convex.relaxed, &found.x) {
-        let outcome = solution(task, x, settings, control.budget);
-        let value = instance
-            .objective
-            .map_or(0.0, |o| o.sense.sign() * outcome.level[o.column as usize]);
-        if outcome.claim == Claim::Unfinished || !is_same(value, found.value) {
-            return Ok(None);
-        }
-    }
     Ok(Some(found))
 }
 

@@ -64,6 +64,8 @@ pub(super) struct Convex<'s> {
     /// By column of it: discrete.
     pub discrete: Vec<bool>,
     pub forms: &'s mut [Form],
+    /// What the nonlinear solver says of the program may be wrong where a square is 0.
+    pub has_cones: bool,
     /// Columns of the linear instance, of those of the linear program.
     pub numbers: &'s [u32],
 }
@@ -322,22 +324,27 @@ impl Relaxation for Outer<'_> {
     }
 
     fn solve_decided(&mut self, x: &[f64], control: &mut Control) -> Solved {
-        match self.decided(x, control) {
-            Some(Some(level)) => {
-                self.point = self.way.forth(&level);
-                Solved::Value(self.mip.value(&self.point))
-            }
-            Some(None) => Solved::Infeasible,
-            None => {
-                let at = self.way.back(x);
-                if self.mip.is_feasible(x) && self.violated(&at, &at, EXACT).is_empty() {
-                    self.point = x.to_vec();
-                    return Solved::Value(self.mip.value(x));
-                }
-                self.exact = false;
-                Solved::Failed
-            }
+        let decided = self.decided(x, control);
+        let is_infeasible = decided == Some(None);
+        let best = decided.flatten().map(|level| self.way.forth(&level));
+        let (own, at) = (self.mip.value(x), self.way.back(x));
+        let is_doubtful = match &best {
+            Some(p) => self.convex.has_cones && self.mip.value(p) - own > SAME * own.abs().max(0.1),
+            None => self.convex.has_cones || !is_infeasible,
+        };
+        if is_doubtful && self.mip.is_feasible(x) && self.violated(&at, &at, EXACT).is_empty() {
+            self.point = x.to_vec();
+            return Solved::Value(own);
         }
+        let Some(point) = best else {
+            self.exact &= is_infeasible;
+            return match is_infeasible {
+                true => Solved::Infeasible,
+                false => Solved::Failed,
+            };
+        };
+        self.point = point;
+        Solved::Value(self.mip.value(&self.point))
     }
 
     fn x(&self) -> &[f64] {

@@ -60,7 +60,10 @@ pub fn shape(p: &Instance) -> Shape {
             Some(z) => match at_origin(p, &mut e, row, z) {
                 Some(f) => {
                     objective = f;
-                    (is_convex(p, &objective.hessian, p.sign()), None)
+                    (
+                        is_convex(p.column_count(), &objective.hessian, p.sign()),
+                        None,
+                    )
                 }
                 None => return Shape::Nonlinear(row),
             },
@@ -73,7 +76,10 @@ pub fn shape(p: &Instance) -> Shape {
                 };
                 in_rows = true;
                 let h = hessian(p, &mut e, row, sign);
-                (h.is_some_and(|h| is_convex(p, &h, 1.0)), Some(row))
+                (
+                    h.is_some_and(|h| is_convex(p.column_count(), &h, 1.0)),
+                    Some(row),
+                )
             }
         };
         if !convex {
@@ -87,11 +93,11 @@ pub fn shape(p: &Instance) -> Shape {
     Shape::ConvexQuadratic { objective, in_rows }
 }
 
-/// Whether `sign` times a Hessian is positive semidefinite.
-fn is_convex(p: &Instance, hessian: &[(usize, usize, f64)], sign: f64) -> bool {
+/// Whether `sign` times a Hessian of so many columns is positive semidefinite.
+pub fn is_convex(columns: usize, hessian: &[(usize, usize, f64)], sign: f64) -> bool {
     let lower = hessian.iter().filter(|e| e.0 >= e.1);
     let lower: Vec<_> = lower.map(|&(i, j, v)| (i, j, sign * v)).collect();
-    is_semidefinite(p.column_count(), &lower)
+    is_semidefinite(columns, &lower)
 }
 
 /// Entries of the Hessian of a quadratic row times a number: row, column, value, both triangles.
