@@ -430,9 +430,10 @@ fn cone(
     linear: impl Iterator<Item = (usize, f64)>,
     constant: f64,
 ) -> Option<([u32; 2], Form)> {
-    let is_curved = |j: usize| hessian.iter().any(|e| (e.0, e.1) == (j, j) && e.2 > 0.0);
-    let (mut curved, sides): (BTreeSet<usize>, BTreeSet<usize>) =
-        hessian.iter().map(|e| e.0).partition(|&j| is_curved(j));
+    let diagonal = hessian.iter().filter(|e| e.0 == e.1 && e.2 > 0.0);
+    let mut curved: BTreeSet<usize> = diagonal.map(|e| e.0).collect();
+    let all: BTreeSet<usize> = hessian.iter().map(|e| e.0).collect();
+    let sides = &all - &curved;
     let (y, z) = (*sides.first()?, *sides.last()?);
     let of_sides: Vec<_> = hessian.iter().filter(|e| sides.contains(&e.0)).collect();
     let a = match of_sides[..] {

