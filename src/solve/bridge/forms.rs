@@ -362,12 +362,12 @@ fn is_whole(instance: &Instance, columns: &[u32]) -> bool {
 pub(in crate::solve) fn with_forms(instance: &Instance) -> Option<WithForms> {
     let all_switches = switches(instance, &instance.nonlinear_rows());
     let known = shape(instance);
-    let (coned, forms) = match known {
+    let (without, forms) = match known {
         Shape::Linear => return None,
         Shape::ConvexQuadratic { .. } => return with_squares(instance, Vec::new(), &all_switches),
         _ => without_cones(instance).unzip(),
     };
-    let (has_cones, program) = (coned.is_some(), coned.as_ref().unwrap_or(instance));
+    let (has_cones, program) = (without.is_some(), without.as_ref().unwrap_or(instance));
     let split = Split::new(program, forms.unwrap_or_default(), &all_switches)?;
     let out = match shape(&split.rest) {
         Shape::Linear => WithForms {
@@ -400,7 +400,7 @@ fn without_cones(instance: &Instance) -> Option<(Instance, Vec<Form>)> {
     let (activity, slopes) = evaluator.linearised(&origin).ok()?;
     let direction = directions(instance);
     let mut builder = Builder::new(instance);
-    let (mut forms, mut is_cone) = (Vec::new(), vec![false; degrees.len()]);
+    let mut cones = BTreeMap::new();
     for row in (0..degrees.len()).filter(|&i| degrees[i] == Degree::Quadratic) {
         let sign = direction[row];
         let all = hessian(instance, &mut evaluator, row, sign)?;
@@ -409,16 +409,21 @@ fn without_cones(instance: &Instance) -> Option<(Instance, Vec<Form>)> {
         }
         let constant = sign * (activity[row] - instance.rows.rhs[row]);
         let linear = slopes[row].iter().map(|&(j, v)| (j, sign * v));
-        let ([y, z], mut form) = cone(instance, &all, linear, constant)?;
+        cones.insert(row, cone(instance, &all, linear, constant)?);
+    }
+    builder.entries.retain(|e| !cones.contains_key(&e.0));
+    for (row, coefficient, term) in expressions(instance) {
+        if !cones.contains_key(&row) {
+            builder.push_term(row, coefficient, term);
+        }
+    }
+    let mut forms = Vec::new();
+    for (row, ([y, z], mut form)) in cones {
+        let sign = direction[row];
         form.column = builder.columns.push(0.0, f64::INFINITY) as u32;
-        builder.entries.retain(|e| e.0 != row);
         builder.entries.extend([(row, y, -sign), (row, z, -sign)]);
         builder.rows.rhs[row] = 0.0;
         form.put(row, sign, &mut builder, &mut forms);
-        is_cone[row] = true;
-    }
-    for (row, coefficient, term) in expressions(instance).filter(|t| !is_cone[t.0]) {
-        builder.push_term(row, coefficient, term);
     }
     (!forms.is_empty()).then(|| (builder.finish_discrete(instance), forms))
 }
