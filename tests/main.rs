@@ -14,6 +14,7 @@ mod formulation;
 mod functions;
 mod highlighting;
 mod integers;
+mod kinks;
 mod layers;
 mod library;
 mod limits;

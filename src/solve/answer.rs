@@ -6,7 +6,7 @@
 use super::backend::{Backend, Reply, Task, choose};
 use super::bridge::{
     Bridge, elastic::Elastic, epigraph::Epigraph, inner_sums::InnerSums, kkt::Kkt,
-    least_squares::LeastSquares, triangular::Triangular,
+    least_squares::LeastSquares, pieces, triangular::Triangular,
 };
 use super::budget::Size;
 use super::certificate::{self, Residuals, TOLERANCE, nonlinear};
@@ -131,7 +131,10 @@ fn solve(
     affords_hessian(task, budget)?;
     let backend = choose(backends, task).ok_or_else(|| missing(task))?;
     let reply = backend.solve(task, settings, budget)?;
-    Ok(certified(task, reply, None))
+    let found = certified(task, reply, None);
+    Ok(pieces::without_descent(
+        task, found, certified, settings, budget,
+    ))
 }
 
 /// A way to an answer, where it applies and leads to one.

@@ -7,6 +7,7 @@
 //! * [`inner_sums`]: long sums inside functions, as columns and rows;
 //! * [`least_squares`]: a sum of as many squares as there are variables as equations;
 //! * [`kkt`]: the optimality conditions of a linear program as a complementarity problem;
+//! * [`pieces`]: the pieces that meet at a kink, to find a direction of descent;
 //! * [`products`]: pairs as nonlinear rows, for programs with equilibrium constraints;
 //! * [`triangular`]: columns that equations give one after the other, as numbers.
 
@@ -20,6 +21,7 @@ pub mod inner_sums;
 pub mod kkt;
 pub mod least_squares;
 mod parts;
+pub mod pieces;
 pub mod products;
 pub mod triangular;
 

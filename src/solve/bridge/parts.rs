@@ -67,6 +67,12 @@ impl Term {
         out
     }
 
+    /// The expression with a column in place of each function with kinks; `make` gives the column for a function and its
+    /// arguments, the inner one of two first.
+    pub(super) fn without_kinks(&self, make: &mut dyn FnMut(Function, Vec<Self>) -> u32) -> Self {
+        Tree::new(self).smooth(self.ops.len() - 1, make)
+    }
+
     /// Function and arguments, if a function with kinks comes last.
     pub(super) fn kink(&self) -> Option<(Function, Vec<Term>)> {
         let last = self.ops.len() - 1;
@@ -208,5 +214,22 @@ impl<'e> Tree<'e> {
             self.rewrite(argument, least, make, out);
         }
         out.copy(self.whole, op);
+    }
+
+    /// See [`Term::without_kinks`].
+    fn smooth(&self, p: usize, make: &mut dyn FnMut(Function, Vec<Term>) -> u32) -> Term {
+        let ends = self.arguments(p).into_iter();
+        let arguments: Vec<Term> = ends.map(|a| self.smooth(a, make)).collect();
+        match self.whole.ops[p] {
+            Op::Call(f @ (Function::Max | Function::Min | Function::Abs), _) => {
+                Term::column(make(f, arguments) as usize)
+            }
+            op => {
+                let mut out = Term::default();
+                arguments.into_iter().for_each(|a| out.append(a));
+                out.copy(self.whole, op);
+                out
+            }
+        }
     }
 }
