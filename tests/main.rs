@@ -6,6 +6,7 @@ mod bad_input;
 mod certify;
 mod common;
 mod complementarity;
+mod cones;
 mod corpus;
 mod derivatives;
 mod docs;

@@ -3,9 +3,9 @@
 //! The status that is reported follows from the residuals recomputed on the unscaled instance, and is never better than
 //! what the backend claims.
 
-use super::backend::{Backend, Reply, Task, choose};
+use super::backend::{Backend, Reply, Task, choose, is_called};
 use super::bridge::{
-    Bridge, elastic::Elastic, epigraph::Epigraph, inner_sums::InnerSums, kkt::Kkt,
+    Bridge, cones::Conic, elastic::Elastic, epigraph::Epigraph, inner_sums::InnerSums, kkt::Kkt,
     least_squares::LeastSquares, pieces, triangular::Triangular,
 };
 use super::budget::Size;
@@ -15,7 +15,8 @@ use super::mpec::Stationarity;
 use super::mpec::pairs::Program;
 use super::registry::BACKENDS;
 use super::{
-    Budget, Claim, ModelStatus, Outcome, Settings, SolveError, SolverStatus, lp, mip, nlp, noise,
+    Budget, Claim, ModelStatus, Outcome, Settings, SolveError, SolverStatus, Strategy, lp, mip,
+    nlp, noise,
 };
 use crate::autodiff::{Evaluator, second_derivatives};
 use crate::model::instance::{Instance, Relation};
@@ -141,10 +142,11 @@ fn solve(
 type Way = fn(&[&dyn Backend], &Task, &Settings, &Budget) -> Option<Answer>;
 
 /// What is tried before a task is given to a backend as it is.
-const WAYS: [Way; 6] = [
+const WAYS: [Way; 7] = [
     over::<Kkt>,
     over::<Triangular>,
     over::<Epigraph>,
+    by_cones,
     over::<LeastSquares>,
     by_products,
     over::<InnerSums>,
@@ -158,6 +160,120 @@ fn over<B: Bridge>(
 ) -> Option<Answer> {
     let bridge = B::build(backends, task, settings)?;
     across(backends, &bridge, task, settings, budget)
+}
+
+/// A convex program: a point that has multipliers is optimal, and where no method finds one, Clarabel solves it by cones.
+fn by_cones(
+    backends: &[&dyn Backend],
+    task: &Task,
+    settings: &Settings,
+    budget: &Budget,
+) -> Option<Answer> {
+    let instance = task.instance;
+    let named = |name: &str| {
+        backends
+            .iter()
+            .any(|b| b.takes(task) && is_called(*b, name))
+    };
+    if instance.is_linear()
+        || !task.is_continuous()
+        || !settings.runs(Strategy::Cones)
+        || task.choice.is_some_and(named)
+    {
+        return None;
+    }
+    let conic = Conic::new(instance)?;
+    let smooth = || {
+        let mut without = settings.option("without").unwrap_or_default();
+        without.push_str(",cones");
+        let mut settings = settings.clone();
+        settings.options.push(("without".into(), without));
+        solve(backends, task, &settings, budget).ok()
+    };
+    if !conic.has_apex {
+        let mut found = smooth()?;
+        let proved = found.residuals.is_feasible(TOLERANCE)
+            && found.residuals.dual_relative <= TOLERANCE
+            && found.outcome.claim == Claim::LocallySolved;
+        let limited = !matches!(
+            found.outcome.status,
+            SolverStatus::NormalCompletion | SolverStatus::TerminatedBySolver
+        );
+        match found.status {
+            ModelStatus::LocallyOptimal if proved => {
+                found.status = ModelStatus::Optimal;
+                found.outcome.claim = Claim::Solved;
+                return Some(found);
+            }
+            ModelStatus::Optimal | ModelStatus::Unbounded | ModelStatus::Infeasible => {
+                return Some(found);
+            }
+            _ if limited => return Some(found),
+            _ => {}
+        }
+    }
+    let solution = conic.solve(instance, budget)?;
+    let reply = Reply::from(solution.outcome);
+    let found = certified(task, reply.clone(), None);
+    if found.outcome.claim == Claim::Solved
+        && found.residuals.dual_relative > POLISHED
+        && let Some(polished) = polished(backends, task, &found, settings, budget)
+    {
+        return Some(polished);
+    }
+    if found.status != ModelStatus::Feasible || reply.outcome.claim != Claim::Solved {
+        let proved = !matches!(found.status, ModelStatus::IntermediateInfeasible);
+        return proved.then_some(found);
+    }
+    let found = certified(task, reply, Some(solution.residuals));
+    found.status.is_solution().then_some(found)
+}
+
+/// Cones leave about half of the digits of their gap in the multipliers of rows as they are written: with more residual than
+/// this a method that has derivatives goes on from there.
+const POLISHED: f64 = 1e-9;
+
+/// Iterations of that method.
+const POLISH_ITERATIONS: u64 = 30;
+
+/// The solution of a convex program, with better multipliers.
+fn polished(
+    backends: &[&dyn Backend],
+    task: &Task,
+    found: &Answer,
+    settings: &Settings,
+    budget: &Budget,
+) -> Option<Answer> {
+    let mut instance = task.instance.clone();
+    instance.columns.level.clone_from(&found.outcome.level);
+    instance
+        .columns
+        .marginal
+        .clone_from(&found.outcome.column_marginal);
+    instance
+        .rows
+        .marginal
+        .clone_from(&found.outcome.row_marginal);
+    let there = Task {
+        instance: &instance,
+        ..*task
+    };
+    let backend = choose(backends, &there)?;
+    let reply = budget.within(f64::INFINITY, POLISH_ITERATIONS, |b| {
+        backend.solve(&there, settings, b)
+    });
+    let mut reply = reply.ok()?;
+    if !matches!(reply.outcome.claim, Claim::Solved | Claim::LocallySolved) {
+        return None;
+    }
+    reply.outcome.claim = Claim::Solved;
+    reply.outcome.iterations += found.outcome.iterations;
+    reply.outcome.solver = found.outcome.solver;
+    reply.outcome.message.clone_from(&found.outcome.message);
+    let better = certified(task, reply, None);
+    let proved = better.status == ModelStatus::Optimal
+        && better.residuals.dual_relative < found.residuals.dual_relative;
+    proved.then_some(better)
 }
 
 fn by_products(

@@ -87,6 +87,10 @@ strategies! {
             "kinks on the side where they are convex are replaced by a column and a row for each argument",
             "one solve of the larger program",
             "Boyd & Vandenberghe 2004, 4.1.3";
+        Cones "cones",
+            "all rows are known to be convex, and not all linear: Clarabel solves the conic program where rows may have no multipliers, or others fail",
+            "two conic solves",
+            "Lobo et al. 1998; Grant, Boyd & Ye 2006; Goulart & Chen 2024";
         InnerSums "inner_sums",
             "linear sums of 500 variables inside functions, others of 1000 (a tenth where second derivatives would fill the memory), become columns",
             "a row and a column for each",

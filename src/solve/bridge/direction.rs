@@ -3,6 +3,7 @@
 //! In `y =e= abs(x)`, with y only in `y =l= z` and z minimised, `y =g= abs(x)` will do: whoever has a solution of this may
 //! lower y until the equation holds.
 
+use crate::autodiff::Evaluator;
 use crate::model::builder::Term;
 use crate::model::instance::{ColumnKind, Function, Instance, Op, Relation};
 use crate::solve::bridge::parts::expressions;
@@ -13,6 +14,33 @@ const DEPTH: usize = 8;
 
 /// Equations that are looked at for one: their number grows with the depth as that of ways through a network does.
 const LOOKS: usize = 1000;
+
+/// Rounds in which variables make up for each other.
+const SWEEPS: usize = 20;
+
+/// Moves the columns that make up for equations until these hold. None where a row has no value.
+pub(in crate::solve) fn make_up(
+    instance: &Instance,
+    makes_up: &BTreeMap<usize, usize>,
+    level: &mut [f64],
+) -> Option<()> {
+    let mut evaluator = Evaluator::first_order(instance);
+    let mut activity = vec![0.0; instance.row_count()];
+    for _ in 0..SWEEPS {
+        evaluator.rows(level, &mut activity).ok()?;
+        let mut moved = false;
+        for (&i, &j) in makes_up {
+            let a = instance.matrix.row(i).find(|e| e.0 == j)?.1;
+            let gap = instance.rows.rhs[i] - activity[i];
+            moved |= gap != 0.0;
+            level[j] += gap / a;
+        }
+        if !moved {
+            break;
+        }
+    }
+    Some(())
+}
 
 /// How a value depends on a variable.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -53,7 +81,7 @@ impl Slope {
 }
 
 /// The rows that a column stands in, with its coefficients and terms.
-pub(super) struct Directions<'i> {
+pub(in crate::solve) struct Directions<'i> {
     instance: &'i Instance,
     /// By column: linear entries (row, coefficient).
     linear: Vec<Vec<(usize, f64)>>,
@@ -63,13 +91,13 @@ pub(super) struct Directions<'i> {
     /// By row: columns in its nonlinear terms.
     inside: Vec<Vec<u32>>,
     /// By equation: the column that makes it hold.
-    pub(super) makes_up: BTreeMap<usize, usize>,
+    pub(in crate::solve) makes_up: BTreeMap<usize, usize>,
     /// Looks that are left.
     looks: usize,
 }
 
 impl<'i> Directions<'i> {
-    pub(super) fn new(instance: &'i Instance) -> Self {
+    pub(in crate::solve) fn new(instance: &'i Instance) -> Self {
         let (n, m) = (instance.column_count(), instance.row_count());
         let mut out = Self {
             instance,
@@ -99,7 +127,7 @@ impl<'i> Directions<'i> {
     }
 
     /// Whether what the left side of this equation lacks (or has too much of) can be made up for; by what is noted.
-    pub(super) fn can_relax(&mut self, row: usize, lacks: bool) -> bool {
+    pub(in crate::solve) fn can_relax(&mut self, row: usize, lacks: bool) -> bool {
         self.looks = LOOKS;
         self.compensator(row, lacks, DEPTH)
     }

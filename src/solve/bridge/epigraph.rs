@@ -15,7 +15,7 @@
 
 use super::Bridge;
 use super::builder::Builder;
-use super::direction::Directions;
+use super::direction::{Directions, make_up};
 use super::parts::{Parts, expressions, has_kink};
 use crate::autodiff::Evaluator;
 use crate::model::builder::Term;
@@ -25,9 +25,6 @@ use crate::solve::backend::{Backend, Reply, Task};
 use crate::solve::certificate::{TOLERANCE, nonlinear::linearise, primal};
 use crate::solve::{Claim, ModelStatus, Settings, Strategy};
 use std::collections::BTreeMap;
-
-/// Times that variables make up for each other, at most.
-const SWEEPS: usize = 20;
 
 /// A program without kinks in place of one with some.
 pub struct Epigraph {
@@ -111,21 +108,9 @@ impl Bridge for Epigraph {
         let level = &mut outcome.level;
         let value = level[objective];
         let mut evaluator = Evaluator::first_order(instance);
+        make_up(instance, &self.makes_up, level)?;
         let mut activity = vec![0.0; m];
         evaluator.rows(level, &mut activity).ok()?;
-        for _ in 0..SWEEPS {
-            let mut moved = false;
-            for (&i, &j) in &self.makes_up {
-                let a = instance.matrix.row(i).find(|e| e.0 == j)?.1;
-                let gap = instance.rows.rhs[i] - activity[i];
-                moved |= gap != 0.0;
-                level[j] += gap / a;
-            }
-            evaluator.rows(level, &mut activity).ok()?;
-            if !moved {
-                break;
-            }
-        }
         let at = linearise(instance, &mut evaluator, level, &outcome.row_marginal).ok()?;
         let own = primal(instance, level, &activity, &at.row_size);
         let same = (level[objective] - value).abs() <= TOLERANCE * value.abs().max(1.0);

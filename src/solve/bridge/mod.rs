@@ -1,6 +1,7 @@
 //! Reformulations: an instance in place of another, and the way back. Each stands here once, whoever uses it.
 //!
 //! * [`binaries`]: products with a binary factor, as columns and rows, for programs with discrete columns;
+//! * [`cones`]: convex rows as second-order, exponential and power cones;
 //! * [`elastic`]: rows that may be violated at a price;
 //! * [`epigraph`]: max, min and abs where they stand convexly, as columns and rows;
 //! * [`forms`]: convex terms as columns, for programs with discrete columns;
@@ -13,14 +14,15 @@
 
 pub mod binaries;
 mod builder;
-mod direction;
+pub mod cones;
+pub(super) mod direction;
 pub mod elastic;
 pub mod epigraph;
 pub mod forms;
 pub mod inner_sums;
 pub mod kkt;
 pub mod least_squares;
-mod parts;
+pub(super) mod parts;
 pub mod pieces;
 pub mod products;
 pub mod triangular;

@@ -4,7 +4,9 @@ use crate::model::builder::Term;
 use crate::model::instance::{Function, Instance, Op, Relation};
 
 /// All nonlinear terms: row, coefficient, expression.
-pub(super) fn expressions(instance: &Instance) -> impl Iterator<Item = (usize, f64, Term)> {
+pub(in crate::solve) fn expressions(
+    instance: &Instance,
+) -> impl Iterator<Item = (usize, f64, Term)> {
     instance.nonlinear.iter().flat_map(|t| {
         t.terms().map(|slots| {
             let expression = Term {
@@ -19,7 +21,7 @@ pub(super) fn expressions(instance: &Instance) -> impl Iterator<Item = (usize, f
 
 /// By row: 1 where its left side is to be small, −1 where it is to be large, 0 where it is given. In the row that defines the
 /// objective, what makes the objective better makes its other terms larger or smaller.
-pub(super) fn directions(instance: &Instance) -> Vec<f64> {
+pub(in crate::solve) fn directions(instance: &Instance) -> Vec<f64> {
     let of = |r: &Relation| match r {
         Relation::Less => 1.0,
         Relation::Greater => -1.0,
@@ -38,16 +40,16 @@ pub(super) fn directions(instance: &Instance) -> Vec<f64> {
 
 /// A weighted sum.
 #[derive(Debug, Default)]
-pub(super) struct Parts {
-    pub(super) constant: f64,
-    pub(super) linear: Vec<(u32, f64)>,
+pub(in crate::solve) struct Parts {
+    pub(in crate::solve) constant: f64,
+    pub(in crate::solve) linear: Vec<(u32, f64)>,
     /// Anything else, with its weight.
-    pub(super) nonlinear: Vec<(f64, Term)>,
+    pub(in crate::solve) nonlinear: Vec<(f64, Term)>,
 }
 
 impl Term {
     /// `weight` times the expression, split.
-    pub(super) fn parts(&self, weight: f64) -> Parts {
+    pub(in crate::solve) fn parts(&self, weight: f64) -> Parts {
         let mut parts = Parts::default();
         let tree = Tree::new(self);
         tree.split(self.ops.len() - 1, weight, &mut parts);
@@ -56,7 +58,7 @@ impl Term {
 
     /// The expression with a column in place of each sum of `least` or more entries that stands in it, none of them inside
     /// another; `make` gives the column, or refuses.
-    pub(super) fn without_sums(
+    pub(in crate::solve) fn without_sums(
         &self,
         least: usize,
         make: &mut dyn FnMut(Parts) -> Option<u32>,
@@ -74,7 +76,7 @@ impl Term {
     }
 
     /// Function and arguments, if a function with kinks comes last.
-    pub(super) fn kink(&self) -> Option<(Function, Vec<Term>)> {
+    pub(in crate::solve) fn kink(&self) -> Option<(Function, Vec<Term>)> {
         let last = self.ops.len() - 1;
         match self.ops[last] {
             Op::Call(f @ (Function::Max | Function::Min | Function::Abs), _) => {
@@ -87,18 +89,18 @@ impl Term {
     }
 
     /// How many affine expressions it depends on its columns by.
-    pub(super) fn sums(&self) -> usize {
+    pub(in crate::solve) fn sums(&self) -> usize {
         let leaf = |op: &&Op| matches!(op, Op::Var(_) | Op::Affine(..));
         self.ops.iter().filter(leaf).count()
     }
 
     /// Whether a function with kinks stands anywhere in it.
-    pub(super) fn has_kink(&self) -> bool {
+    pub(in crate::solve) fn has_kink(&self) -> bool {
         has_kink(&self.ops)
     }
 }
 
-pub(super) fn has_kink(ops: &[Op]) -> bool {
+pub(in crate::solve) fn has_kink(ops: &[Op]) -> bool {
     let kink = |op: &Op| {
         matches!(
             op,
@@ -109,13 +111,13 @@ pub(super) fn has_kink(ops: &[Op]) -> bool {
 }
 
 /// Where the subexpression that ends at each operation begins.
-struct Tree<'e> {
-    whole: &'e Term,
-    begin: Vec<usize>,
+pub(in crate::solve) struct Tree<'e> {
+    pub(in crate::solve) whole: &'e Term,
+    pub(in crate::solve) begin: Vec<usize>,
 }
 
 impl<'e> Tree<'e> {
-    fn new(whole: &'e Term) -> Self {
+    pub(in crate::solve) fn new(whole: &'e Term) -> Self {
         let mut begin: Vec<usize> = Vec::with_capacity(whole.ops.len());
         for (p, op) in whole.ops.iter().enumerate() {
             let first = (0..op.arguments()).fold(p, |end, _| begin[end - 1]);
@@ -125,7 +127,7 @@ impl<'e> Tree<'e> {
     }
 
     /// Ends of the arguments of the operation at p, in order.
-    fn arguments(&self, p: usize) -> Vec<usize> {
+    pub(in crate::solve) fn arguments(&self, p: usize) -> Vec<usize> {
         let mut ends = Vec::new();
         let mut next = p;
         for _ in 0..self.whole.ops[p].arguments() {
@@ -137,7 +139,7 @@ impl<'e> Tree<'e> {
     }
 
     /// The number that the subexpression ending at p is, if it is one.
-    fn number(&self, p: usize) -> Option<f64> {
+    pub(in crate::solve) fn number(&self, p: usize) -> Option<f64> {
         match self.whole.ops[p] {
             Op::Const(k) => Some(self.whole.constants[k as usize]),
             Op::Negate => Some(-self.number(p - 1)?),
@@ -145,7 +147,7 @@ impl<'e> Tree<'e> {
         }
     }
 
-    fn split(&self, p: usize, weight: f64, out: &mut Parts) {
+    pub(in crate::solve) fn split(&self, p: usize, weight: f64, out: &mut Parts) {
         let (columns, constants) = (&self.whole.columns, &self.whole.constants);
         let arguments = self.arguments(p);
         match (self.whole.ops[p], &arguments[..]) {
@@ -179,7 +181,7 @@ impl<'e> Tree<'e> {
     }
 
     /// The subexpression that ends at p, with slots of its own.
-    fn cut(&self, p: usize) -> Term {
+    pub(in crate::solve) fn cut(&self, p: usize) -> Term {
         let mut out = Term::default();
         for q in self.begin[p]..=p {
             out.copy(self.whole, self.whole.ops[q]);

@@ -1,9 +1,9 @@
 //! Clarabel on a scaled [`Problem`]: quadratic programs, and linear ones that [`super::barrier`] does not solve, as those without a solution.
 //!
 //! Clarabel solves `min ½xᵀPx + qᵀx, Ax + s = b, s ∈ K` with multipliers z ∈ K*, Px + q + Aᵀz = 0. Here
-//! P = 0 for linear programs, and K is a zero cone (equations) followed by a nonnegative orthant (sides of rows, then
-//! bounds); fixed columns are equations. With y the derivative of the optimum with respect to a
-//! row's side: y = −z for an equation and an upper side, +z for a lower side; likewise for d.
+//! P = 0 for linear programs, and K is a zero cone (equations), a nonnegative orthant (sides of rows, then
+//! bounds), and the cones of a conic program; fixed columns are equations. With y the derivative of the optimum with
+//! respect to a row's side: y = −z for an equation and an upper side, +z for a lower side; likewise for d.
 //!
 //! Clarabel trusts its input: a problem comes from [`super::form`], which has checked it.
 
@@ -12,8 +12,8 @@ use std::sync::{Mutex, mpsc};
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
-    DefaultInfo, DefaultSettings, DefaultSolution, DefaultSolver, IPSolver, NonnegativeConeT,
-    SolverStatus, SupportedConeT, ZeroConeT,
+    DefaultInfo, DefaultSettings, DefaultSolution, DefaultSolver, ExponentialConeT, IPSolver,
+    NonnegativeConeT, PowerConeT, SecondOrderConeT, SolverStatus, SupportedConeT, ZeroConeT,
 };
 
 use super::Ended;
@@ -38,6 +38,43 @@ pub struct Run {
     pub almost: bool,
 }
 
+/// `constant + Σ a_j x_j`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Affine {
+    /// The constant.
+    pub constant: f64,
+    /// Columns and coefficients.
+    pub terms: Vec<(u32, f64)>,
+}
+
+impl Affine {
+    /// Its value.
+    pub fn value(&self, x: &[f64]) -> f64 {
+        let terms = self.terms.iter().map(|&(j, a)| a * x[j as usize]);
+        self.constant + terms.sum::<f64>()
+    }
+}
+
+/// The cones of Clarabel that a program's nonlinear rows become.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub enum ConeKind {
+    /// `e₀ ≥ ‖(e₁, …)‖₂`.
+    SecondOrder,
+    /// `e₁ exp(e₀/e₁) ≤ e₂`, e₁ > 0.
+    Exponential,
+    /// `e₀^p e₁^(1−p) ≥ |e₂|`, e₀, e₁ ≥ 0.
+    Power(f64),
+}
+
+/// Affine expressions that are to lie in a cone.
+#[derive(Clone, Debug)]
+pub struct Cone {
+    /// Which cone.
+    pub kind: ConeKind,
+    /// Its coordinates.
+    pub expressions: Vec<Affine>,
+}
+
 /// One inequality or equation of Clarabel's.
 #[derive(Clone, Copy)]
 enum Source {
@@ -58,30 +95,55 @@ enum Source {
 /// Runs Clarabel, on ½xᵀPx + cᵀx where the upper triangle of a positive semidefinite P is given by
 /// columns. The budget is asked every few milliseconds; a factorisation that it does not afford is not begun.
 pub fn solve(p: &Problem, hessian: Option<&Sparse>, tolerance: f64, budget: &Budget) -> Run {
+    solve_conic(p, hessian, &[], tolerance, budget).0
+}
+
+/// The same with cones; also the dual point of each cone's coordinates, one after the other.
+pub fn solve_conic(
+    p: &Problem,
+    hessian: Option<&Sparse>,
+    conic: &[Cone],
+    tolerance: f64,
+    budget: &Budget,
+) -> (Run, Vec<f64>) {
     let n = p.n();
     let sources = sources(p);
     let is_equation = |s: &&Source| matches!(s, Source::Equation(_) | Source::Fixed(_));
     let equations = sources.iter().take_while(is_equation).count();
-    let (matrix, b) = stack(p, &sources);
-    let a = compressed(sources.len(), matrix.transpose(n));
-    let cones: Vec<SupportedConeT<f64>> = [
+    let (mut matrix, mut b) = stack(p, &sources);
+    for e in conic.iter().flat_map(|c| &c.expressions) {
+        matrix.push(e.terms.iter().map(|&(j, a)| (j as usize, -a)));
+        b.push(e.constant);
+    }
+    let a = compressed(b.len(), matrix.transpose(n));
+    let linear = [
         ZeroConeT(equations),
         NonnegativeConeT(sources.len() - equations),
-    ]
-    .into_iter()
-    .filter(|c| !matches!(c, ZeroConeT(0) | NonnegativeConeT(0)))
-    .collect();
+    ];
+    let curved = conic.iter().map(|c| match c.kind {
+        ConeKind::SecondOrder => SecondOrderConeT(c.expressions.len()),
+        ConeKind::Exponential => ExponentialConeT(),
+        ConeKind::Power(p) => PowerConeT(p),
+    });
+    let cones: Vec<SupportedConeT<f64>> = linear
+        .into_iter()
+        .filter(|c| !matches!(c, ZeroConeT(0) | NonnegativeConeT(0)))
+        .chain(curved)
+        .collect();
     let settings = settings(tolerance, budget);
     let mut point = Point {
         x: (0..n).map(|j| p.at_bound(j)).collect(),
         y: vec![0.0; p.m()],
         d: vec![0.0; n],
     };
-    let without = |point, ended, iterations| Run {
-        point,
-        ended,
-        iterations,
-        almost: false,
+    let without = |point, ended, iterations| {
+        let run = Run {
+            point,
+            ended,
+            iterations,
+            almost: false,
+        };
+        (run, vec![0.0; b.len() - sources.len()])
     };
     if let Err(why) = budget.affords(|| kkt_size(&a, hessian)) {
         budget.log(format!("clarabel: {why}"));
@@ -118,13 +180,21 @@ pub fn solve(p: &Problem, hessian: Option<&Sparse>, tolerance: f64, budget: &Bud
     }
     point.y = row_multipliers(&sources, &solution.z, p.m());
     let (ended, almost) = ended(solution.status, &point, p, budget);
+    let duals = solution.z[sources.len()..].to_vec();
     point.d = reduced_costs(p, hessian, &point);
-    Run {
+    let expressions = conic.iter().flat_map(|c| &c.expressions);
+    for (e, dual) in expressions.zip(&duals) {
+        for &(j, a) in &e.terms {
+            point.d[j as usize] -= a * dual;
+        }
+    }
+    let run = Run {
         point,
         ended,
         iterations,
         almost,
-    }
+    };
+    (run, duals)
 }
 
 /// Multipliers of the rows from those of the inequalities and equations.

@@ -21,7 +21,7 @@ total..      sum(i, x(i) + y(i)) =e= 7/3 + off;
 model next / second, same, dear, total /;
 solve next using nlp minimizing w;
 statuses('near') = next.modelStat;
-*= statuses('near') 2
+*= statuses('near') 1
 * nothing left to choose
 x.fx(i) = known(i);  y.fx(i) = 0;
 solve next using nlp minimizing w;

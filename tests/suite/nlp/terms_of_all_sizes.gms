@@ -18,6 +18,6 @@ plant.fx('10',r) = 0;  cut.fx('10',r) = 0;  work.fx('10') = 0;
 model m / all /;
 solve m using qcp maximizing gain;
 scalar few;  few = m.iterusd < 31;
-*= m.modelstat 2
+*= m.modelstat 1
 *= gain.l 69436.96642
 *= few 1
