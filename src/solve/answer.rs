@@ -216,6 +216,7 @@ fn by_cones(
     let reply = Reply::from(solution.outcome);
     let found = certified(task, reply.clone(), None);
     if found.outcome.claim == Claim::Solved
+        && solution.at_apex == 0
         && found.residuals.dual_relative > POLISHED
         && let Some(polished) = polished(backends, task, &found, settings, budget)
     {

@@ -88,7 +88,7 @@ strategies! {
             "one solve of the larger program",
             "Boyd & Vandenberghe 2004, 4.1.3";
         Cones "cones",
-            "all rows are known to be convex, and not all linear: Clarabel solves the conic program where rows may have no multipliers, or others fail",
+            "convex rows that may have no multipliers, or others fail: Clarabel",
             "two conic solves",
             "Lobo et al. 1998; Grant, Boyd & Ye 2006; Goulart & Chen 2024";
         InnerSums "inner_sums",

@@ -81,6 +81,8 @@ pub(in crate::solve) struct Solution {
     pub(in crate::solve) outcome: Outcome,
     /// Dual residuals of the conic program.
     pub(in crate::solve) residuals: Residuals,
+    /// Cones that end at their apex, where a row has no multiplier.
+    pub(in crate::solve) at_apex: usize,
 }
 
 fn constant(constant: f64) -> Affine {
@@ -213,12 +215,11 @@ impl Conic {
         let mut makes_up = BTreeMap::new();
         let mut multipliers = Vec::new();
         for (row, &curved) in nonlinear.iter().enumerate() {
-            let mut left = Affine::default();
-            left.terms = instance
-                .matrix
-                .row(row)
-                .map(|(j, a)| (j as u32, a))
-                .collect();
+            let entries = instance.matrix.row(row);
+            let mut left = Affine {
+                constant: 0.0,
+                terms: entries.map(|(j, a)| (j as u32, a)).collect(),
+            };
             let relation = instance.rows.relation[row];
             let rhs = instance.rows.rhs[row];
             if relation == Relation::Free {
@@ -299,6 +300,7 @@ impl Conic {
                     return Some(Solution {
                         outcome,
                         residuals: Residuals::default(),
+                        at_apex: 0,
                     });
                 }
                 Ended::Solved | Ended::Failed => {
@@ -312,8 +314,13 @@ impl Conic {
                     ));
                     if residuals.dual_relative <= SOLVED && residuals.gap_relative <= SOLVED {
                         let mut outcome = self.outcome(instance, x, Claim::Solved, iterations)?;
-                        self.price(instance, &mut outcome, &run.point.y, &run.point.d, &duals);
-                        return Some(Solution { outcome, residuals });
+                        let at_apex =
+                            self.price(instance, &mut outcome, &run.point.y, &run.point.d, &duals);
+                        return Some(Solution {
+                            outcome,
+                            residuals,
+                            at_apex,
+                        });
                     }
                     None
                 }
@@ -323,7 +330,11 @@ impl Conic {
             if let Some(claim) = claim {
                 let outcome = self.outcome(instance, x, claim, iterations)?;
                 let residuals = Residuals::default();
-                return Some(Solution { outcome, residuals });
+                return Some(Solution {
+                    outcome,
+                    residuals,
+                    at_apex: 0,
+                });
             }
         }
         None
@@ -360,7 +371,7 @@ impl Conic {
         })
     }
 
-    /// Marginals of the rows and columns of the instance.
+    /// Marginals of the rows and columns of the instance; how many cones end at their apex.
     fn price(
         &self,
         instance: &Instance,
@@ -368,7 +379,7 @@ impl Conic {
         y: &[f64],
         d: &[f64],
         duals: &[f64],
-    ) {
+    ) -> usize {
         let sign = instance.sign();
         let starts = self.starts();
         let x = &outcome.level;
@@ -412,6 +423,7 @@ impl Conic {
                 self.kinds()
             ));
         }
+        at_apex
     }
 
     /// Where the coordinates of each cone begin.
@@ -604,6 +616,13 @@ impl Compiler<'_> {
         self.cones.len() - 1
     }
 
+    /// A second-order cone, which may end at its apex where no coordinate is a number other than 0.
+    fn with_apex(&mut self, coordinates: Vec<Affine>) -> usize {
+        let away = |e: &Affine| e.terms.is_empty() && e.constant != 0.0;
+        self.has_apex |= !coordinates.iter().any(away);
+        self.cone(ConeKind::SecondOrder, coordinates)
+    }
+
     fn new_column(&mut self) -> Affine {
         column(self.columns.push(f64::NEG_INFINITY, f64::INFINITY) as u32)
     }
@@ -663,8 +682,7 @@ impl Compiler<'_> {
         if q.rest.constant > 0.0 {
             coordinates.push(constant(q.rest.constant.sqrt()));
         }
-        self.has_apex = true;
-        let k = self.cone(ConeKind::SecondOrder, coordinates);
+        let k = self.with_apex(coordinates);
         Some(Multiplier::Square(k, -0.5 * way))
     }
 
@@ -699,7 +717,6 @@ impl Compiler<'_> {
         let arguments = tree.arguments(p);
         let number = |k: usize| arguments.get(k).and_then(|&a| tree.number(a));
         let convex = weight > 0.0;
-        let second = ConeKind::SecondOrder;
         match (tree.whole.ops[p], &arguments[..]) {
             (Op::Add(_), all) => {
                 let mut sum = Affine::default();
@@ -719,8 +736,7 @@ impl Compiler<'_> {
                 let v = self.new_column();
                 let mut coordinates = vec![plus(v.clone(), &b, 1.0), plus(v.clone(), &b, -1.0)];
                 coordinates.extend(squares.iter().map(|s| times(s, 2.0)));
-                self.cone(second, coordinates);
-                self.has_apex = true;
+                self.with_apex(coordinates);
                 Some(v)
             }
             (Op::Multiply(_), all) => {
@@ -795,8 +811,7 @@ impl Compiler<'_> {
         let v = self.new_column();
         let mut coordinates = vec![v.clone()];
         coordinates.extend(all);
-        self.cone(ConeKind::SecondOrder, coordinates);
-        self.has_apex = true;
+        self.with_apex(coordinates);
         times(&v, weight)
     }
 
