@@ -9,9 +9,7 @@
 //!
 //! * **dual** residual: the largest of these, in the model's units;
 //! * **complementarity**: the largest |multiplier · distance|;
-//! * **dual relative**: a reduced cost relative to max(1, max_i |m_i ∂a_i/∂x_j|), with |m_i| at least η
-//!   (see [`super`]) in rows that bind, a distance relative
-//!   to max(1, |x_j|), a multiplier by the reduced costs it makes, a slack relative to its row's size; a reduced cost that
+//! * **dual relative**: a reduced cost relative to max(1, max_i |m_i ∂a_i/∂x_j|), a distance relative to max(1, |x_j|), a multiplier by the reduced costs it makes, a slack relative to its row's size; a reduced cost that
 //!   changes its sign within the tolerance of the level is 0.
 //!
 //! The primal residuals are those of [`super`], with |∂a_i/∂x_j · x_j| as the size of an
@@ -37,9 +35,6 @@ const HIDING: f64 = 1e12;
 /// How far inside of a bound values and derivatives are taken that do not exist on it or just beyond, relative to its size.
 const INSIDE: f64 = 1e-10;
 
-/// A row binds where its slack is at most this, relative to its size.
-const BINDING: f64 = 1e-6;
-
 /// Values, reduced costs and sizes at a point.
 ///
 /// Errors: a function that has no value or no derivative there.
@@ -59,7 +54,7 @@ pub fn linearise(
         evaluator.jacobian(&inside, &mut value)?;
     }
     let (start, column) = evaluator.jacobian_pattern();
-    let (xi, eta) = units(instance);
+    let (xi, _) = units(instance);
     let mut reduced = vec![Sum::default(); n];
     let mut column_size = vec![0.0f64; n];
     let mut row_size = vec![0.0f64; m];
@@ -81,15 +76,10 @@ pub fn linearise(
             row_size[i] = row_size[i].max((a * x[j]).abs()).max(floor);
         }
         let multiplier = row_marginal[i];
-        // what is slack has no multiplier that could be wrong by a little
-        let gap = (activity[i] - instance.rows.rhs[i]).abs();
-        let binds = instance.rows.relation[i] == Relation::Equal
-            || gap <= BINDING * row_size[i].max(instance.rows.rhs[i].abs()).max(1.0);
-        let size = multiplier.abs().max(if binds { eta } else { 0.0 });
         for k in start[i]..start[i + 1] {
             let (j, a) = (column[k] as usize, value[k]);
             reduced[j].add_product(-multiplier, a);
-            column_size[j] = column_size[j].max((a * size).abs());
+            column_size[j] = column_size[j].max((a * multiplier).abs());
         }
     }
     Ok(Linearised {

@@ -11,6 +11,7 @@ pub mod consistent;
 pub mod convex;
 pub mod curvature;
 pub mod driver;
+mod fritz_john;
 mod growth;
 pub mod interior_point;
 #[cfg(feature = "ipopt")]

@@ -1,6 +1,7 @@
 //! Sequential programs ([`slqp`]) from a point: what they prove, and what is made of rows without multipliers.
 
 use super::driver::Driver;
+use super::fritz_john::is_without_descent;
 use super::growth::Growth;
 use super::interior_point::{Ended, lock};
 use super::newton;
@@ -134,8 +135,8 @@ impl Driver<'_, '_> {
         self.keep(trial);
     }
 
-    /// Where rows have no multipliers, as a square that is to be 0: the point is optimal if the same rows, a little wider, have an
-    /// optimum with multipliers and all but the same value.
+    /// Where rows have no multipliers, as a square that is to be 0: those of the same rows, a little wider, name the rows whose
+    /// curvature keeps the point from going down.
     fn without_multipliers(&mut self, mut trial: Trial) -> Trial {
         let mut problem = lock(&self.problem);
         problem.start = trial.x.clone();
@@ -165,13 +166,15 @@ impl Driver<'_, '_> {
         let near = difference <= 1e-3 * trial.objective.abs().max(1.0);
         let (primal, dual) = (wide.residuals.primal_relative, wide.residuals.dual_relative);
         let solved = run.end == slqp::End::Solved && primal <= NEARLY && dual <= TOLERANCE;
-        match near && trial.is_feasible() {
-            true if solved => Trial {
-                irregular: true,
-                ..trial
-            },
-            false if wide.is_optimal() => wide,
-            _ => trial,
+        if near && trial.is_feasible() && solved {
+            let (instance, budget) = (self.instance, self.budget);
+            trial.irregular =
+                is_without_descent(instance, &trial.level, &wide.row_marginal, budget);
+            return trial;
+        }
+        match wide.is_optimal() {
+            true => wide,
+            false => trial,
         }
     }
 

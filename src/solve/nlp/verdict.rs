@@ -102,8 +102,8 @@ impl Driver<'_, '_> {
                 Some(format!("the last evaluation that failed: {f} in {row}"))
             }
             (Claim::WithoutMultipliers, _) => Some(
-                "rows have no multipliers at the solution (a square that is to be 0, say): the value is that of the same \
-                 rows a hundred-millionth wider"
+                "rows have no multipliers at the solution (a square that is to be 0, say): their curvature leaves no \
+                 direction that leads down"
                     .into(),
             ),
             (Claim::LocallySolved, _) if self.convex.is_some() => {
