@@ -1,8 +1,8 @@
-//! Random convex programs with second-order cones, as squares and as roots: all are solved, none beside the optimum.
+//! Random convex programs of six families, their norms as squares and as roots: all are solved, none beside the optimum.
 //!
-//! The reference is a bundle of tangents: `min Σ wₖ tₖ + cᵀx` over the rows and the tangents of `tₖ ≥ ‖Aₖ x − bₖ‖` at all
+//! The reference is a bundle of tangents: `min Σ wₖ tₖ + cᵀx` over the rows and the tangents of `tₖ ≥ fₖ(x)` at all
 //! points so far, a linear program, until no tangent is violated. It bounds the optimum from below; its last point, with
-//! tₖ moved up to the norms, from above.
+//! tₖ moved up to the functions, from above.
 
 use bmod::model::outcome::ModelStatus;
 use bmod::model::problem_type::ProblemType;
@@ -41,8 +41,7 @@ struct Norm {
 
 impl Norm {
     fn residual(&self, x: &[f64]) -> Vec<f64> {
-        let dot = |a: &[f64]| a.iter().zip(x).map(|(a, x)| a * x).sum::<f64>();
-        self.rows.iter().map(|(a, b)| dot(a) - b).collect()
+        self.rows.iter().map(|(a, b)| dot(a, x) - b).collect()
     }
 
     fn value(&self, x: &[f64]) -> f64 {
@@ -61,18 +60,64 @@ impl Norm {
     }
 }
 
-/// min Σ wₖ ‖Aₖ x − bₖ‖ + cᵀx, D x ≤ e, −100 ≤ x ≤ 100.
+/// A convex function.
+enum Convex {
+    Norm(Norm),
+    /// Σ (a x − b)².
+    Squares(Norm),
+    /// log(1 + exp(a x − b)).
+    Logistic(Vec<f64>, f64),
+    /// exp(a x − b).
+    Exponential(Vec<f64>, f64),
+    /// x log x of a column above 0.
+    Entropy(usize),
+}
+
+impl Convex {
+    fn value(&self, x: &[f64]) -> f64 {
+        match self {
+            Self::Norm(f) => f.value(x),
+            Self::Squares(f) => f.value(x).powi(2),
+            Self::Logistic(a, b) => (dot(a, x) - b).exp().ln_1p(),
+            Self::Exponential(a, b) => (dot(a, x) - b).exp(),
+            Self::Entropy(j) => x[*j] * x[*j].ln(),
+        }
+    }
+
+    fn gradient(&self, x: &[f64]) -> Vec<f64> {
+        let along = |a: &[f64], by: f64| a.iter().map(|a| a * by).collect();
+        match self {
+            Self::Norm(f) => f.gradient(x),
+            Self::Squares(f) => along(&f.gradient(x), 2.0 * f.value(x)),
+            Self::Logistic(a, b) => along(a, 1.0 / (1.0 + (b - dot(a, x)).exp())),
+            Self::Exponential(a, b) => along(a, (dot(a, x) - b).exp()),
+            Self::Entropy(j) => {
+                let mut out = vec![0.0; x.len()];
+                out[*j] = x[*j].ln() + 1.0;
+                out
+            }
+        }
+    }
+}
+
+fn dot(a: &[f64], x: &[f64]) -> f64 {
+    a.iter().zip(x).map(|(a, x)| a * x).sum()
+}
+
+/// min Σ wₖ fₖ(x) + cᵀx, D x ≤ e, l ≤ x ≤ 100.
 struct Program {
     cost: Vec<f64>,
-    norms: Vec<(f64, Norm)>,
+    functions: Vec<(f64, Convex)>,
     rows: Vec<(Vec<f64>, f64)>,
+    lower: f64,
 }
 
 impl Program {
-    /// Places to be near to, or residuals to be small, some of them weighty; bounded from below as Σ w ‖·‖ outgrows cᵀx.
-    fn random(random: &mut Random) -> Self {
+    /// Places to be near to, or residuals to be small, some of them weighty, beside other functions in four of the families;
+    /// bounded from below as Σ w ‖·‖ outgrows cᵀx.
+    fn random(random: &mut Random, family: Family) -> Self {
         let n = 2 + random.below(3) as usize;
-        let near = random.below(2) == 0;
+        let near = family != Family::Residuals;
         let norm = |random: &mut Random| {
             let rows = if near {
                 n
@@ -95,8 +140,22 @@ impl Program {
             0 => 20.0,
             _ => 0.5 + random.below(100) as f64 / 50.0,
         };
-        let norms = (0..count).map(|_| (weight(random), norm(random)));
-        let norms = norms.collect();
+        let mut functions: Vec<(f64, Convex)> = Vec::new();
+        for _ in 0..count {
+            let weight = weight(random);
+            functions.push((weight, Convex::Norm(norm(random))));
+        }
+        for k in 0..2 + random.below(3) as usize {
+            let a = (0..n).map(|_| random.number(1.0)).collect();
+            let (b, weight) = (random.number(2.0), weight(random));
+            functions.push(match family {
+                Family::Places | Family::Residuals => break,
+                Family::Risks => (0.1 * weight, Convex::Squares(norm(random))),
+                Family::Logistic => (weight, Convex::Logistic(a, b)),
+                Family::Exponential => (weight, Convex::Exponential(a, b)),
+                Family::Entropy => (weight, Convex::Entropy(k % n)),
+            });
+        }
         let rows = (0..random.below(3)).map(|_| {
             let a: Vec<f64> = (0..n).map(|_| random.number(1.0)).collect();
             (a, random.below(100) as f64 / 20.0)
@@ -105,8 +164,12 @@ impl Program {
         let small = |random: &mut Random| if near { random.number(0.2) } else { 0.0 };
         Self {
             cost: (0..n).map(|_| small(random)).collect(),
-            norms,
+            functions,
             rows,
+            lower: match family {
+                Family::Entropy => 0.01,
+                _ => -BOX,
+            },
         }
     }
 
@@ -115,19 +178,23 @@ impl Program {
     }
 
     fn value(&self, x: &[f64]) -> f64 {
-        let norms: f64 = self.norms.iter().map(|(w, f)| w * f.value(x)).sum();
-        norms + self.cost.iter().zip(x).map(|(c, x)| c * x).sum::<f64>()
+        let functions: f64 = self.functions.iter().map(|(w, f)| w * f.value(x)).sum();
+        functions + dot(&self.cost, x)
     }
 
     /// Columns x, t and z, the objective and the linear rows.
     fn linear(&self) -> (Instance, usize) {
         let mut out = Instance::default();
         for _ in 0..self.n() {
-            out.add_column(-BOX, BOX, 0.0);
+            out.add_column(self.lower, BOX, self.lower.max(0.0));
         }
         let mut objective: Vec<(usize, f64)> = self.cost.iter().copied().enumerate().collect();
-        for (w, _) in &self.norms {
-            let t = out.add_column(0.0, f64::INFINITY, 0.0);
+        for (w, f) in &self.functions {
+            let least = match f {
+                Convex::Entropy(_) => -1.0,
+                _ => 0.0,
+            };
+            let t = out.add_column(least, f64::INFINITY, 0.0);
             objective.push((t, *w));
         }
         let z = out.add_column(f64::NEG_INFINITY, f64::INFINITY, 0.0);
@@ -153,9 +220,9 @@ impl Program {
             if high - low <= REFERENCE_GAP * high.abs().max(1.0) {
                 return [low, high];
             }
-            for (k, (_, norm)) in self.norms.iter().enumerate() {
-                let (value, slope) = (norm.value(x), norm.gradient(x));
-                let at: f64 = slope.iter().zip(x).map(|(g, x)| g * x).sum();
+            for (k, (_, f)) in self.functions.iter().enumerate() {
+                let (value, slope) = (f.value(x), f.gradient(x));
+                let at = dot(&slope, x);
                 let mut entries: Vec<(usize, f64)> = slope.into_iter().enumerate().collect();
                 entries.push((self.n() + k, -1.0));
                 instance.add_row(entries, Relation::Less, at - value);
@@ -164,32 +231,43 @@ impl Program {
         panic!("the bundle of tangents ends with a gap");
     }
 
-    /// As a model: t² ≥ Σ (a x − b)², t ≥ √Σ, or t ≥ eDist.
+    /// As a model; norms as t² ≥ Σ (a x − b)², t ≥ √Σ, or t ≥ eDist.
     fn conic(&self, form: u64) -> (Instance, usize) {
         let (mut out, z) = self.linear();
-        for (k, (_, norm)) in self.norms.iter().enumerate() {
+        for (k, (_, f)) in self.functions.iter().enumerate() {
             let t = self.n() + k;
-            let affine = |(a, b): &(Vec<f64>, f64)| {
+            let affine = |a: &[f64], b: f64| {
                 let terms = a.iter().enumerate().filter(|e| *e.1 != 0.0);
                 terms.fold(Term::constant(-b), |s, (j, a)| s + *a * Term::column(j))
             };
-            let all: Vec<Term> = norm.rows.iter().map(affine).collect();
-            if form == 0 {
+            let all =
+                |f: &Norm| -> Vec<Term> { f.rows.iter().map(|(a, b)| affine(a, *b)).collect() };
+            let squares = |f: &Norm| {
+                let squares = all(f).into_iter().map(|e| e.powi(2));
+                squares.reduce(|a, b| a + b).expect("a norm has rows")
+            };
+            if let (Convex::Norm(f), 0) = (f, form) {
                 let row = out.add_row([], Relation::Less, 0.0);
-                for e in all {
+                for e in all(f) {
                     out.add_term(row, 1.0, e.powi(2));
                 }
                 out.add_term(row, -1.0, Term::column(t).powi(2));
                 continue;
             }
             let row = out.add_row([(t, -1.0)], Relation::Less, 0.0);
-            let term = match form {
-                1 => {
-                    let squares = all.into_iter().map(|e| e.powi(2));
-                    let sum = squares.reduce(|a, b| a + b).expect("a norm has rows");
-                    Term::call(Function::Sqrt, [sum])
+            let term = match f {
+                Convex::Norm(f) if form == 1 => Term::call(Function::Sqrt, [squares(f)]),
+                Convex::Norm(f) => Term::call(Function::EDist, all(f)),
+                Convex::Squares(f) => squares(f),
+                Convex::Logistic(a, b) => {
+                    let exp = Term::call(Function::Exp, [affine(a, *b)]);
+                    Term::call(Function::Log, [Term::constant(1.0) + exp])
                 }
-                _ => Term::call(Function::EDist, all),
+                Convex::Exponential(a, b) => Term::call(Function::Exp, [affine(a, *b)]),
+                Convex::Entropy(j) if form == 1 => {
+                    Term::column(*j) * Term::call(Function::Log, [Term::column(*j)])
+                }
+                Convex::Entropy(j) => -1.0 * Term::call(Function::Entropy, [Term::column(*j)]),
             };
             out.add_term(row, 1.0, term);
         }
@@ -205,27 +283,56 @@ fn solved(using: ProblemType, instance: &Instance) -> (ModelStatus, Vec<f64>) {
     (found.status, found.outcome.level)
 }
 
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Family {
+    Places,
+    Residuals,
+    Risks,
+    Logistic,
+    Exponential,
+    Entropy,
+}
+
+const FAMILIES: [Family; 6] = [
+    Family::Places,
+    Family::Residuals,
+    Family::Risks,
+    Family::Logistic,
+    Family::Exponential,
+    Family::Entropy,
+];
+
+/// Programs of each family; `BMOD_CASES` asks for more.
+const CASES: usize = 25;
+
 #[test]
 fn random_cone_programs_are_solved() {
+    let asked = std::env::var("BMOD_CASES")
+        .ok()
+        .and_then(|n| n.parse().ok());
     let mut random = Random(1);
-    for case in 0..100 {
-        let program = Program::random(&mut random);
-        let [low, high] = program.reference();
-        for form in 0..3 {
-            let (instance, z) = program.conic(form);
-            let using = if form == 0 {
-                ProblemType::Qcp
-            } else {
-                ProblemType::Nlp
-            };
-            let (status, level) = solved(using, &instance);
-            let near = TOLERANCE * high.abs().max(1.0);
-            assert_eq!(status, ModelStatus::Optimal, "program {case}, form {form}");
-            assert!(
-                (low - near..=high + near).contains(&level[z]),
-                "program {case}, form {form}: {} is not from {low} to {high}",
-                level[z]
-            );
+    for family in FAMILIES {
+        for case in 0..asked.unwrap_or(CASES) {
+            let program = Program::random(&mut random, family);
+            let [low, high] = program.reference();
+            for form in 0..3 {
+                let (instance, z) = program.conic(form);
+                let quadratic = form == 0
+                    && matches!(family, Family::Places | Family::Residuals | Family::Risks);
+                let using = match quadratic {
+                    true => ProblemType::Qcp,
+                    false => ProblemType::Nlp,
+                };
+                let (status, level) = solved(using, &instance);
+                let near = TOLERANCE * high.abs().max(1.0);
+                let which = format!("{family:?} {case}, form {form}");
+                assert_eq!(status, ModelStatus::Optimal, "{which}");
+                assert!(
+                    (low - near..=high + near).contains(&level[z]),
+                    "{which}: {} is not from {low} to {high}",
+                    level[z]
+                );
+            }
         }
     }
 }

@@ -162,6 +162,14 @@ fn over<B: Bridge>(
     across(backends, &bridge, task, settings, budget)
 }
 
+/// Whether the user names Clarabel for a program that is not linear.
+fn asks_for_clarabel(task: &Task) -> bool {
+    let named = task
+        .choice
+        .is_some_and(|name| is_called(&lp::Clarabel, name));
+    named && task.is_continuous() && !task.has_pairs() && !task.instance.is_linear()
+}
+
 /// A convex program: a point that has multipliers is optimal, and where no method finds one, Clarabel solves it by cones.
 fn by_cones(
     backends: &[&dyn Backend],
@@ -175,9 +183,10 @@ fn by_cones(
             .iter()
             .any(|b| b.takes(task) && is_called(*b, name))
     };
+    let asked = asks_for_clarabel(task);
     if instance.is_linear()
         || !task.is_continuous()
-        || !settings.runs(Strategy::Cones)
+        || !settings.runs(Strategy::Cones) && !asked
         || task.choice.is_some_and(named)
     {
         return None;
@@ -190,7 +199,7 @@ fn by_cones(
         settings.options.push(("without".into(), without));
         solve(backends, task, &settings, budget).ok()
     };
-    if !conic.has_apex {
+    if !conic.has_apex && !asked {
         let mut found = smooth()?;
         let proved = found.residuals.is_feasible(TOLERANCE)
             && found.residuals.dual_relative <= TOLERANCE

@@ -119,12 +119,10 @@ impl Bridge for Epigraph {
         }
         outcome.ray.clear();
         outcome.claim = match proved {
+            true if answer.status == ModelStatus::Optimal => Claim::Solved,
             true => Claim::LocallySolved,
             false => Claim::Infeasible,
         };
-        if self.instance.is_linear() && proved {
-            outcome.message = Some("convex: a local optimum is a global one".into());
-        }
         Some(outcome.into())
     }
 }

@@ -61,8 +61,7 @@ impl Nonlinear {
             integer: kinds.map(whole).collect(),
             using,
             instance: relaxed,
-            // of a convex quadratic program it says that its answer is a global one
-            choice: Some(choice.unwrap_or("clarabel").to_string()),
+            choice: choice.map(str::to_string),
             settings: settings.clone(),
             first: level.clone(),
             point: Rc::new(level.clone()),

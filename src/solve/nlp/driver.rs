@@ -91,16 +91,17 @@ pub fn solve(
         Convexity::Asked(engine) => Quadratic::new(&mut problem, engine, budget),
     };
     let quadratic = quadratic.filter(|_| settings.runs(Strategy::ConvexQuadratic));
-    let mut driver = Driver::new(instance, problem, interior_point, settings, budget);
     if let (Convexity::Asked(engine), None) = (convexity, &quadratic) {
-        driver.message = Some(format!(
-            "not a convex quadratic program with linear rows: solved by {}, not by {}",
-            interior_point.about().name,
-            engine.name
-        ));
+        let name = engine.name;
+        return Err(SolveError::new(format!(
+            "`option {} = {name}`: {name} takes convex programs, and this one is not known to be convex; `default` leaves the \
+             choice to the program",
+            task.using
+        )));
     }
+    let mut driver = Driver::new(instance, problem, interior_point, settings, budget);
     driver.was_moved = was_moved;
-    driver.convex = quadratic.is_some().then_some(convexity);
+    driver.is_convex = quadratic.is_some();
     driver.named = matches!(convexity, Convexity::Ignored);
     driver.run(quadratic)
 }
@@ -267,7 +268,7 @@ pub(super) struct Driver<'a, 'm> {
     pub(super) settings: &'a Settings,
     pub(super) budget: &'a Budget<'m>,
     /// A point that satisfies the KKT conditions is a global optimum.
-    pub(super) convex: Option<Convexity>,
+    pub(super) is_convex: bool,
     /// The model asks for this interior-point solver.
     pub(super) named: bool,
     /// Name of who found the answer.
@@ -317,7 +318,7 @@ impl<'a, 'm> Driver<'a, 'm> {
             interior_point,
             settings,
             budget,
-            convex: None,
+            is_convex: false,
             named: false,
             solver: interior_point.about().name,
             message: None,
@@ -446,7 +447,7 @@ impl Driver<'_, '_> {
         let Some(first) = optimal(self) else {
             return Ok(());
         };
-        if self.convex.is_some() || self.work() > CHEAP || !self.wants_search() {
+        if self.is_convex || self.work() > CHEAP || !self.wants_search() {
             return Ok(());
         }
         let mut agreed = true;

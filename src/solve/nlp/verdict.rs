@@ -1,6 +1,5 @@
 //! What is known in the end.
 
-use super::Convexity;
 use super::driver::Driver;
 use super::interior_point::{Ended, lock};
 use super::relaxation;
@@ -47,10 +46,9 @@ impl Driver<'_, '_> {
         } else if best.irregular {
             Claim::WithoutMultipliers
         } else if best.is_optimal() {
-            match self.convex {
-                Some(Convexity::Asked(_)) => Claim::Solved,
-                _ if affine => Claim::Solved,
-                _ => Claim::LocallySolved,
+            match self.is_convex || affine {
+                true => Claim::Solved,
+                false => Claim::LocallySolved,
             }
         } else if unbounded {
             Claim::Unbounded
@@ -106,9 +104,6 @@ impl Driver<'_, '_> {
                  direction that leads down"
                     .into(),
             ),
-            (Claim::LocallySolved, _) if self.convex.is_some() => {
-                Some("convex: a local optimum is a global one".into())
-            }
             _ => self.message.take(),
         };
         Outcome {
