@@ -118,9 +118,11 @@ impl Bridge for Epigraph {
             return None;
         }
         outcome.ray.clear();
-        outcome.claim = match proved {
-            true => Claim::LocallySolved,
-            false => Claim::Infeasible,
+        outcome.claim = match answer.status {
+            // by its cones
+            ModelStatus::Optimal if !self.instance.is_linear() => Claim::Solved,
+            _ if proved => Claim::LocallySolved,
+            _ => Claim::Infeasible,
         };
         if self.instance.is_linear() && proved {
             outcome.message = Some("convex: a local optimum is a global one".into());
