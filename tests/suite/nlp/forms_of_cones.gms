@@ -87,6 +87,16 @@ solve shares using nlp minimizing v;
 *= shares.modelstat 1
 *= shares.objval -1.94591014906
 
+* the same of two variables: s log(s/t) + t with s >= 1 is least where t = s = 1
+equation cross;
+cross..  v =e= s*log(s/t) + t;
+model crossed / cross /;
+s.lo = 1;  t.lo = 0.1;  t.l = 3;
+solve crossed using nlp minimizing v;
+*= crossed.modelstat 1
+*= crossed.objval 1
+s.lo = 0;  t.lo = 0;
+
 * entropy, as a function: the largest is log(3)
 equation disorder;
 disorder..  v =e= sum(i, entropy(u(i)));
