@@ -234,7 +234,7 @@ fn by_cones(
     found.status.is_solution().then_some(found)
 }
 
-/// The cones of a program that a solve recognises as convex, counted by kind, where it is neither linear nor quadratic alone.
+/// What a program consists of that a solve recognises as convex: its cones, counted by kind. None for a linear one.
 pub(crate) fn cones_of(using: ProblemType, instance: &Instance) -> Option<String> {
     if instance.is_linear() {
         return None;
@@ -245,7 +245,10 @@ pub(crate) fn cones_of(using: ProblemType, instance: &Instance) -> Option<String
         return there(&b);
     }
     if let Some(b) = Epigraph::build(BACKENDS, &task, &settings) {
-        return there(&b);
+        return match b.instance().is_linear() {
+            true => Some("its kinks are rows of a linear program".into()),
+            false => there(&b),
+        };
     }
     Conic::new(instance).map(|c| c.kinds())
 }

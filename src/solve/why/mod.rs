@@ -150,7 +150,8 @@ pub fn findings(
         }
         _ => {}
     }
-    if !solved || scaling.is_some() {
+    // there the derivatives at the last point say nothing about units
+    if !matches!(out[..], [Finding::Contradiction { .. }]) {
         out.extend(scaling);
     }
     out
