@@ -205,7 +205,7 @@ impl Model {
         }
         self.study(choice, &Options::default(), &|m, primal, studied| {
             let chosen = show::Chosen::of(studied);
-            let (page, f) = show::page(m, &m.code, &chosen, Some(&primal.generated));
+            let (page, f) = show::page(m, &m.code, &chosen, Some(primal));
             Ok(Formulas::shown(m, page, &f))
         })
     }

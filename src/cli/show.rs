@@ -15,7 +15,7 @@ pub(super) fn show(a: &ShowArgs) -> Status {
         };
         return studied(&a.model, &a.solve, &chosen, &mut |m, primal, studied| {
             let chosen = show::Chosen::of(&studied);
-            let (page, f) = show::page(m, &m.code, &chosen, Some(&primal.generated));
+            let (page, f) = show::page(m, &m.code, &chosen, Some(&primal));
             tell(&page::write(&page, format(a.format), &f.name));
             Ok(0)
         });

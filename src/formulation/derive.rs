@@ -9,7 +9,10 @@ use super::{Formulation, Multiplier, NewData, Origin, Scope, Sign};
 use crate::check::node::SymbolId;
 use crate::check::symbols::{DomainPosition, SymbolKind, Symbols, UNIVERSE};
 use crate::data::universe::Label;
+use crate::model::problem_type::ProblemType;
 use crate::run::Generated;
+use crate::solve::answer::cones_of;
+use crate::solve::nlp::convex::{Shape, shape};
 use crate::syntax::ast::{ModelItem, VariableKind};
 use rustc_hash::FxHashSet;
 use std::cell::OnceCell;
@@ -34,6 +37,18 @@ pub struct Primal {
     pub generated: Generated,
     /// The answer of the solve, by the columns and rows of the instance.
     pub answer: Option<Values>,
+}
+
+impl Primal {
+    /// Its cones, counted by kind, where a solve recognises that it is convex by them and not by its Hessians.
+    pub fn cones(&self) -> Option<String> {
+        let instance = &self.generated.instance;
+        instance.objective?;
+        match shape(instance) {
+            Shape::Linear | Shape::ConvexQuadratic { .. } => None,
+            _ => cones_of(ProblemType::named(&self.using)?, instance),
+        }
+    }
 }
 
 /// Levels and marginals.

@@ -191,6 +191,10 @@ fn refuse_dual(m: &Machine, primal: &Primal, studied: &Studied) -> Result<(), Bo
         Shape::Quadratic(row) => (row, "quadratic and not convex"),
         Shape::Nonlinear(row) => (Some(row), "neither linear nor quadratic"),
     };
+    let what = match primal.cones() {
+        Some(_) => "convex by its cones only",
+        None => what,
+    };
     let row = row.map(|i| primal.generated.origin.rows.of(i as u32).symbol);
     let why = match row {
         Some(e) => format!("`{}` is {what}", m.symbols.get(e).name),

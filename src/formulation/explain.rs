@@ -29,6 +29,8 @@ pub struct Explained<'a> {
     pub status: ModelStatus,
     /// Ranges of a linear program.
     pub ranges: Option<&'a Ranges>,
+    /// The cones of a program that is recognised as convex.
+    pub cones: Option<String>,
 }
 
 /// Rows and columns up to which ranges are found for an explanation.
@@ -48,6 +50,7 @@ pub fn of(m: &Machine, primal: &Primal, studied: &Studied) -> (Vec<String>, Opti
         primal,
         status: answer.map_or(ModelStatus::NoSolution, |a| a.1.status),
         ranges: ranges.as_ref(),
+        cones: primal.cones(),
     });
     (words, ranges)
 }
@@ -156,6 +159,10 @@ impl Explained<'_> {
             (_, Shape::ConvexQuadratic { .. }) => format!(
                 "Its rows are linear, and its quadratic objective is {curved} (the Hessian is {semi} semidefinite): {global}"
             ),
+            (_, Shape::Quadratic(_) | Shape::Nonlinear(_)) if self.cones.is_some() => {
+                let cones = self.cones.as_deref().unwrap_or_default();
+                format!("It is convex ({cones}): {global}")
+            }
             (_, Shape::Quadratic(Some(k))) => {
                 format!("{} is quadratic and not convex: {local}", row(k))
             }
@@ -180,7 +187,8 @@ impl Explained<'_> {
         };
         let i = &p.generated.instance;
         let column = i.objective.map(|o| o.column as usize);
-        let proved = matches!(shape(i), Shape::Linear | Shape::ConvexQuadratic { .. })
+        let convex = matches!(shape(i), Shape::Linear | Shape::ConvexQuadratic { .. });
+        let proved = (convex || self.cones.is_some() && self.status == ModelStatus::Optimal)
             && self.status != ModelStatus::IntegerSolution;
         let mut text = match p.objective.zip(column) {
             Some(((sense, z), column)) => format!(

@@ -49,6 +49,8 @@ pub enum Math {
     Root(Box<Math>),
     /// An absolute value.
     Absolute(Box<Math>),
+    /// A Euclidean norm.
+    Norm(Box<Math>),
     /// A sum, a product, a minimum …: what it runs over, and what of.
     Big(&'static str, Box<Math>, Box<Math>),
     /// A function.
@@ -432,6 +434,10 @@ impl<'a> Setter<'a> {
             Function::Sqr => power(first(ATOM, self), Math::Number("2".into())),
             Function::Sqrt => (Math::Root(first(0, self)), ATOM),
             Function::Abs => (Math::Absolute(first(0, self)), ATOM),
+            Function::EDist => {
+                let parts = listed(args.iter().map(|a| self.expr(a)).collect());
+                (Math::Norm(Box::new(parts)), ATOM)
+            }
             Function::Power | Function::RPower | Function::VcPower | Function::CvPower => {
                 let base = first(ATOM, self);
                 power(base, self.expr(&args[1]))

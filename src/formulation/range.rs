@@ -26,8 +26,15 @@ pub fn of(
     names: &[String],
 ) -> Result<Ranges, Box<Diagnostic>> {
     let no = |message: &str| of_solve("E0433", studied, message);
-    if primal.objective.is_none() || !primal.generated.instance.is_linear() {
-        return Err(no("ranges belong to a linear program").into());
+    let instance = &primal.generated.instance;
+    if primal.objective.is_none() {
+        return Err(no("ranges belong to a linear program, and there is no objective").into());
+    }
+    if let Some(i) = instance.nonlinear_rows().iter().position(|curved| *curved) {
+        let name = named(m, &primal.generated.origin.rows, i);
+        let message = format!("ranges need a linear program, and {name} is not linear");
+        let help = "the marginals say what a little more on a right side is worth; `bmod explain` puts them into words";
+        return Err(no(&message).help(help).into());
     }
     if let Some((_, name)) = discrete(m, primal) {
         let message = format!("ranges belong to a linear program, and {name} is discrete");

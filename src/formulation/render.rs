@@ -39,6 +39,7 @@ pub fn text(m: &Math) -> String {
         }
         Math::Root(m) => format!("√{}", tight(m)),
         Math::Absolute(m) => format!("|{}|", text(m)),
+        Math::Norm(m) => format!("‖{}‖₂", text(m)),
         Math::Big(op, under, body) => format!("{op}{{{}}} {}", text(under), text(body)),
         Math::Function(f, args) => {
             let args: Vec<String> = args.iter().map(text).collect();
@@ -302,6 +303,7 @@ pub fn latex(m: &Math) -> String {
         Math::Power(a, b) => format!("{{{}}}^{{{}}}", latex(a), latex(b)),
         Math::Root(m) => format!("\\sqrt{{{}}}", latex(m)),
         Math::Absolute(m) => format!("\\left|{}\\right|", latex(m)),
+        Math::Norm(m) => format!("\\left\\lVert{}\\right\\rVert_2", latex(m)),
         Math::Big(op, under, body) => {
             let op = match *op {
                 "∑" => "\\sum",
@@ -470,6 +472,10 @@ pub fn mathml(m: &Math) -> String {
         Math::Power(a, b) => format!("<msup>{}{}</msup>", row(a), row(b)),
         Math::Root(m) => format!("<msqrt>{}</msqrt>", mathml(m)),
         Math::Absolute(m) => format!("<mrow><mo>|</mo>{}<mo>|</mo></mrow>", mathml(m)),
+        Math::Norm(m) => format!(
+            "<msub><mrow><mo>‖</mo>{}<mo>‖</mo></mrow><mn>2</mn></msub>",
+            mathml(m)
+        ),
         Math::Big(op, under, body) => {
             let word = op.chars().all(char::is_alphabetic);
             let op = match word {

@@ -1,7 +1,7 @@
 //! A model as it was written, as formulas.
 
 use super::bounds;
-use super::derive::domain_of;
+use super::derive::{Primal, domain_of};
 use super::lower::{Equation, Lowering};
 use super::page::{Block, Page, Setter, formulas, legend};
 use super::tree::*;
@@ -11,7 +11,7 @@ use crate::check::node::{Code, CodeKind, ModelRow, SolveCode, SymbolId};
 use crate::check::symbols::{SymbolKind, Symbols};
 use crate::check::visit::each_statement;
 use crate::diag::nearest;
-use crate::run::{Generated, Machine, Studied};
+use crate::run::{Machine, Studied};
 use crate::source::Span;
 
 /// What a model consists of, with its objective if some solve says one.
@@ -148,7 +148,7 @@ pub fn page(
     m: &Machine,
     code: &[Code],
     chosen: &Chosen,
-    numbers: Option<&Generated>,
+    numbers: Option<&Primal>,
 ) -> (Page, Formulation) {
     let symbols = &m.symbols;
     let mut f = formulation(m, chosen);
@@ -160,8 +160,10 @@ pub fn page(
     out.extend(formulas(&mut s, &f));
     let known = bounds::known(&mut s, &f, &bounds, f.using.starts_with('r'));
     out.extend(bounds::with(known, false));
-    if let Some(g) = numbers {
-        super::numbers::add(&mut out, m, g);
+    if let Some(p) = numbers {
+        let cones = p.cones();
+        out.extend(cones.map(|c| Block::Words(format!("convex: {c}"))));
+        super::numbers::add(&mut out, m, &p.generated);
     }
     (out, f)
 }

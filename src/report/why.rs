@@ -68,7 +68,21 @@ impl Explanation {
                 members,
                 excess,
                 shown,
-            } => self.irreducible(members, *excess, *shown, instance, names),
+            } => {
+                let weights: Vec<f64> = members.iter().map(|m| m.1).collect();
+                let members: Vec<Member> = members.iter().map(|m| m.0).collect();
+                let mut text = self.irreducible(&members, &weights, *shown, instance, names);
+                if *excess > 0.0 && excess.is_finite() {
+                    text.push_str(&format!(
+                        "\n  Added up with these multipliers they ask for 0 >= {}.",
+                        short(*excess)
+                    ));
+                }
+                text
+            }
+            Finding::Contradiction { members, shown } => {
+                self.irreducible(members, &[], *shown, instance, names)
+            }
             Finding::Discrete(found) => {
                 let rest = match found.shown {
                     true => "without any one of them there is a solution",
@@ -197,15 +211,16 @@ impl Explanation {
         }
     }
 
+    /// Rows and bounds that contradict each other, with their multipliers, if there are any.
     fn irreducible(
         &mut self,
-        members: &[(Member, f64)],
-        excess: f64,
+        members: &[Member],
+        weights: &[f64],
         shown: bool,
         instance: &Instance,
         names: &dyn Names,
     ) -> String {
-        let is_row = |m: &&(Member, f64)| matches!(m.0, Member::Row(_));
+        let is_row = |m: &&Member| matches!(m, Member::Row(_));
         let rows = members.iter().filter(is_row).count();
         let counts = [(rows, "row"), (members.len() - rows, "bound")].into_iter();
         let counts = counts.filter(|(n, _)| *n > 0);
@@ -226,10 +241,10 @@ impl Explanation {
             Member::Upper(j) => Some((names.column_parts(j).0, "most", instance.columns.upper[j])),
         };
         let key = |m: Member| key(m).map(|(s, side, v)| format!("{s}, at {side} {}", digits(v)));
-        for k in members.iter().filter_map(|m| key(m.0)) {
+        for k in members.iter().filter_map(|m| key(*m)) {
             *alike.entry(k).or_default() += 1;
         }
-        for &(m, v) in members {
+        for (n, &m) in members.iter().enumerate() {
             if let Some(k) = key(m)
                 && let Some(count) = alike.get_mut(&k).filter(|c| **c > 4 || **c == 0)
             {
@@ -252,13 +267,10 @@ impl Explanation {
                     format!("{}, at most {}", self.column(j, names), digits(u))
                 }
             };
-            text.push_str(&format!("\n    {line}    (times {})", short(v)));
-        }
-        if excess > 0.0 && excess.is_finite() {
-            text.push_str(&format!(
-                "\n  Added up with these multipliers they ask for 0 >= {}.",
-                short(excess)
-            ));
+            text.push_str(&format!("\n    {line}"));
+            if let Some(v) = weights.get(n) {
+                text.push_str(&format!("    (times {})", short(*v)));
+            }
         }
         text
     }

@@ -212,6 +212,10 @@ fn by_cones(
             ModelStatus::LocallyOptimal if proved => {
                 found.status = ModelStatus::Optimal;
                 found.outcome.claim = Claim::Solved;
+                if found.residuals.primal_relative <= ROUNDED {
+                    let said = || format!("convex: {}", conic.kinds());
+                    found.outcome.message.get_or_insert_with(said);
+                }
                 return Some(found);
             }
             ModelStatus::Optimal | ModelStatus::Unbounded | ModelStatus::Infeasible => {
@@ -237,6 +241,25 @@ fn by_cones(
     }
     let found = certified(task, reply, Some(solution.residuals));
     found.status.is_solution().then_some(found)
+}
+
+/// What a program consists of that a solve recognises as convex: its cones, counted by kind. None for a linear one.
+pub(crate) fn cones_of(using: ProblemType, instance: &Instance) -> Option<String> {
+    if instance.is_linear() {
+        return None;
+    }
+    let (task, settings) = (Task::new(using, instance), Settings::default());
+    let there = |b: &dyn Bridge| cones_of(b.using(), b.instance());
+    if let Some(b) = Triangular::build(BACKENDS, &task, &settings) {
+        return there(&b);
+    }
+    if let Some(b) = Epigraph::build(BACKENDS, &task, &settings) {
+        return match b.instance().is_linear() {
+            true => Some("its kinks are rows of a linear program".into()),
+            false => there(&b),
+        };
+    }
+    Conic::new(instance).map(|c| c.kinds())
 }
 
 /// Cones leave about half of the digits of their gap in the multipliers of rows as they are written: with more residual than

@@ -929,12 +929,14 @@ impl Compiler<'_> {
                 (Op::Call(Function::Log, _), &[p]) => {
                     let (over, under) =
                         quotient(p).or_else(|| Some((affine(&inner, p)?, constant(1.0))))?;
-                    if convex && over == x {
-                        return Some(times(&self.relative_entropy(x, under), weight));
-                    }
-                    // x log(y/x) is concave
-                    if !convex && under == x {
-                        return Some(times(&self.relative_entropy(x, over), -weight));
+                    // x log(a x/y) and, concave, x log(y/(a x))
+                    let (own, other, sign) = match convex {
+                        true => (&over, &under, 1.0),
+                        false => (&under, &over, -1.0),
+                    };
+                    if let Some(a) = multiple(own, &x) {
+                        let y = times(other, 1.0 / a);
+                        return Some(times(&self.relative_entropy(x, y), sign * weight));
                     }
                 }
                 (Op::Call(Function::Exp, _), &[p]) if convex => {
@@ -969,6 +971,19 @@ fn root_of(term: &Term) -> Option<(Affine, f64)> {
         _ => return None,
     };
     Some((affine(&tree, power.0)?, power.1))
+}
+
+/// The positive number that makes the one of the other, rounding aside.
+fn multiple(of: &Affine, one: &Affine) -> Option<f64> {
+    let a = of.terms.first()?.1 / one.terms.first()?.1;
+    let rest = plus(of.clone(), one, -a);
+    let near = |v: f64, of: f64| v.abs() <= 4.0 * f64::EPSILON * of.abs();
+    let size = of
+        .terms
+        .iter()
+        .fold(of.constant.abs(), |t, e| t.max(e.1.abs()));
+    let same = near(rest.constant, size) && rest.terms.iter().all(|e| near(e.1, size));
+    (a > 0.0 && same).then_some(a)
 }
 
 fn affine_of(parts: &Parts) -> Affine {

@@ -3,6 +3,7 @@
 //! Nothing here trusts the solver: every finding is computed from the instance and the point.
 //! [`findings`] chooses by the status; each module says how its finding is made.
 
+mod contradiction;
 mod infeasible;
 mod pairs;
 mod point;
@@ -25,6 +26,13 @@ pub enum Finding {
         members: Vec<(Member, f64)>,
         /// By how much they contradict each other when added up.
         excess: f64,
+        /// Whether that none can be spared was shown.
+        shown: bool,
+    },
+    /// The same of a program with nonlinear rows, whose proof has no multipliers of rows and bounds.
+    Contradiction {
+        /// The members.
+        members: Vec<Member>,
         /// Whether that none can be spared was shown.
         shown: bool,
     },
@@ -132,12 +140,18 @@ pub fn findings(
             }
         }
         _ if !solved => {
-            out.extend(point::no_value(instance, x));
-            out.extend(point::violated(instance, answer));
+            let proved = answer.status == ModelStatus::Infeasible;
+            let found = proved.then(|| contradiction::contradiction(using, instance, budget));
+            out.extend(found.flatten());
+            if out.is_empty() {
+                out.extend(point::no_value(instance, x));
+                out.extend(point::violated(instance, answer));
+            }
         }
         _ => {}
     }
-    if !solved || scaling.is_some() {
+    // there the derivatives at the last point say nothing about units
+    if !matches!(out[..], [Finding::Contradiction { .. }]) {
         out.extend(scaling);
     }
     out

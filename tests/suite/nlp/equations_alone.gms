@@ -19,5 +19,5 @@ model m / all /;
 solve m using nlp minimizing z;
 parameter few;
 few = m.iterusd < 5;
-*= m.modelstat 2
+*= m.modelstat 1
 *= few 1
