@@ -15,6 +15,7 @@ mod formulation;
 mod functions;
 mod highlighting;
 mod integers;
+mod interrupts;
 mod kinks;
 mod layers;
 mod library;

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use indicatif::ProgressBar;
 
-use super::args::{BenchArgs, USAGE};
+use super::args::{BenchArgs, INTERRUPT, USAGE};
 use super::commands::{Status, carry_out_silently, complain, name, options, unwritten, write_file};
 use super::host::{interrupted, styled};
 use crate::report::figure::png;
@@ -87,6 +87,9 @@ pub(super) fn bench(a: &BenchArgs) -> Status {
         }
     });
     let mut status = finished?.end.exit();
+    if interrupted() {
+        status = INTERRUPT;
+    }
     if let Some((k, n)) = asked_beyond {
         let message = format!("there is no solve {k}: the model has {n}");
         return Err(complain(USAGE, message));

@@ -7,7 +7,7 @@ use super::args::{
     Cli, Color, Command, EXECUTION, ListArgs, MessageFormat, ModelArgs, RunArgs, SolveArgs, USAGE,
     completions, manual,
 };
-use super::host::{Output, SystemHost, watch_ctrl_c, write_whole};
+use super::host::{ENDS_ITSELF, Output, SystemHost, watch_signals, write_whole};
 use super::watchdog::{Watch, Watchdog};
 use crate::formulation::derived::Kind;
 use crate::report::diagnostic::{Diagnostic, json_lines};
@@ -35,6 +35,10 @@ pub fn execute(cli: &Cli) -> u8 {
         Color::Always => Some(true),
         Color::Never => Some(false),
     });
+    // An editor's server ends as the system ends processes.
+    if !matches!(cli.command, Command::Lsp { .. }) {
+        watch_signals();
+    }
     let status = match &cli.command {
         Command::Run(a) => run(a),
         Command::Check(a) => Ok(check(a)),
@@ -122,7 +126,7 @@ pub(super) fn carry_out(
     options: Options,
     after: &mut dyn FnMut(&mut Machine),
 ) -> Finished {
-    watch_ctrl_c();
+    ENDS_ITSELF.store(true, std::sync::atomic::Ordering::SeqCst);
     let model = task.model;
     let mut host = SystemHost::new(&model.file, task.out, &model.allow_read, task.output)
         .sandbox(model.sandbox);
@@ -257,7 +261,13 @@ fn run(a: &RunArgs) -> Status {
     });
     let mut status = finished.end.exit();
     if !a.quiet && !finished.report.files.is_empty() {
-        output.write(&format!("written: {}\n", finished.report.files.join(", ")));
+        let Report { files, partial, .. } = &finished.report;
+        let mark = |f: &String| match partial.contains(f) {
+            true => format!("{f} (partial)"),
+            false => f.clone(),
+        };
+        let files: Vec<String> = files.iter().map(mark).collect();
+        output.write(&format!("written: {}\n", files.join(", ")));
     }
     if let (Some(path), Some(text)) = (&a.solution, &solutions) {
         status = status.max(write_to(path, text));
@@ -296,7 +306,11 @@ pub(super) fn write_report(finished: Finished, file: &str, path: &Path) -> u8 {
         diagnostics: Diagnostic::all(&finished.diagnostics, &finished.map),
         ..finished.report.of(file)
     };
-    if let Some(k) = report.diagnostics.iter().position(|d| d.code == "E0490") {
+    if let Some(k) = report
+        .diagnostics
+        .iter()
+        .position(|d| ["E0490", "E0492"].contains(&d.code))
+    {
         let left_out = report.shorten();
         report.diagnostics[k].message.push_str(&left_out);
     }

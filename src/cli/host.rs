@@ -14,11 +14,19 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
+use super::args::INTERRUPT;
 use crate::host::{Found, Host, HostError};
 use crate::system::{self, Files, other, tidy};
 
-/// Set by the first Ctrl-C.
+/// Set by the first Ctrl-C or SIGTERM.
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
+/// Whether the command ends by itself after that.
+pub(super) static ENDS_ITSELF: AtomicBool = AtomicBool::new(false);
+/// Otherwise it is ended after so long.
+pub(super) const GRACE: Duration = Duration::from_millis(1500);
+
+/// Signals that come closer than this are one.
+const SAME_SIGNAL: Duration = Duration::from_millis(200);
 
 /// Where text for people goes.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -62,19 +70,49 @@ pub(super) fn styled(bar: ProgressBar, template: &str) -> ProgressBar {
     }
 }
 
-/// Whether Ctrl-C was pressed.
+/// Whether the user (Ctrl-C) or the system (SIGTERM) has asked for the end.
 pub fn interrupted() -> bool {
     INTERRUPTED.load(Ordering::Relaxed)
 }
 
-/// From the first Ctrl-C on [`Host::interrupted`] is true; the second ends the process.
-pub fn watch_ctrl_c() {
-    // A second handler cannot be set; the first one does the same.
-    let _ = ctrlc::set_handler(|| {
-        if INTERRUPTED.swap(true, Ordering::SeqCst) {
-            std::process::exit(130);
+/// From the first Ctrl-C or SIGTERM on [`Host::interrupted`] is true; the second ends the process.
+pub(super) fn watch_signals() {
+    // Without a handler the system's own way of ending a process is left.
+    #[cfg(unix)]
+    {
+        use signal_hook::consts::{SIGINT, SIGTERM};
+        if let Ok(mut signals) = signal_hook::iterator::Signals::new([SIGINT, SIGTERM]) {
+            std::thread::spawn(move || signals.forever().for_each(|_| signalled()));
+        }
+    }
+    #[cfg(windows)]
+    let _ = ctrlc::set_handler(signalled);
+}
+
+fn signalled() {
+    /// When the first signal came.
+    static FIRST: Mutex<Option<Instant>> = Mutex::new(None);
+    let mut first = FIRST.lock().unwrap_or_else(PoisonError::into_inner);
+    match *first {
+        // Schedulers tell a group of processes and each of them: that is one signal.
+        Some(t) if t.elapsed() < SAME_SIGNAL => return,
+        Some(_) => end_interrupted(),
+        None => *first = Some(Instant::now()),
+    }
+    INTERRUPTED.store(true, Ordering::SeqCst);
+    std::thread::spawn(|| {
+        std::thread::sleep(GRACE);
+        if !ENDS_ITSELF.load(Ordering::SeqCst) {
+            end_interrupted();
         }
     });
+}
+
+/// Ends the process, but not while a file is written.
+fn end_interrupted() -> ! {
+    let _writing = WRITING.lock().unwrap_or_else(PoisonError::into_inner);
+    eprintln!("bmod: interrupted");
+    std::process::exit(i32::from(INTERRUPT))
 }
 
 impl SystemHost {

@@ -15,7 +15,7 @@ use crate::formulation::render::plain;
 use crate::formulation::side::short;
 use crate::formulation::{explain, range, show, study};
 use crate::model::origin::Blocks;
-use crate::report::json::SolveReport;
+use crate::report::json::{RunStatus, SolveReport};
 use crate::run::{Machine, Studied};
 use std::fmt::Write;
 use std::path::Path;
@@ -45,6 +45,9 @@ pub(super) fn report(a: &ReportArgs) -> Status {
             studied = Some(s.number);
         }
     });
+    if finished.end == RunStatus::Interrupted {
+        return Ok(finished.end.exit());
+    }
     let Some(number) = studied else {
         let status = finished.end.exit().max(EXECUTION);
         let file = name(&a.model);

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::args::{EXECUTION, ModelArgs, TestArgs, USAGE};
+use super::args::{EXECUTION, INTERRUPT, ModelArgs, TestArgs, USAGE};
 use super::commands::{Status, carry_out_silently, complain, options};
 use crate::claims::{broken, claims};
 use crate::run::Options;
@@ -44,6 +44,9 @@ pub(super) fn test(a: &TestArgs) -> Status {
             }
         })
         .map_or_else(|status| status, |finished| finished.end.exit());
+        if status == INTERRUPT {
+            return Ok(status);
+        }
         let (word, count) = match status == 0 && wrong.is_empty() {
             true => ("ok    ", &mut passed),
             false => ("FAILED", &mut failed),

@@ -40,7 +40,7 @@ const SECTIONS: &[(&str, &str)] = &[
     ("E0333", "Declarations and data"),
     ("E0350", "Models and solves"),
     ("E0370", "Figures and other output"),
-    ("E0401", "Arithmetic"),
+    ("E0400", "Arithmetic"),
     ("E0410", "Generation and solution"),
     ("E0470", "Files that a run reads and writes"),
     ("E0480", "Aborts, figures and limits"),
@@ -197,6 +197,7 @@ pub const CODES: &[Code] = &[
     row("E0378", Warning, "membership assigned", "`p(t) = t` gives 1 for every element; `ord(t)` is its position, `t.val` its number"),
     row("E0379", Warning, "condition without parentheses", "`a $ b > c` compares `a $ b` with `c`; write `a $ (b > c)`"),
 
+    row("E0400", Execution, "not a count", "a position, width or count is a finite number"),
     row("E0401", Execution, "division by zero", "guard it with a condition"),
     row("E0402", Execution, "infinity times zero", "guard the product with a condition"),
     row("E0403", Execution, "function without a value", "the argument lies outside the function's domain, such as `log(0)`"),
@@ -242,6 +243,7 @@ pub const CODES: &[Code] = &[
     row("E0484", Warning, "empty figure", "a figure with nothing to draw is an empty page; a condition may leave nothing"),
     row("E0490", Execution, "time limit", "raise it with `--time-limit`"),
     row("E0491", Execution, "memory limit", "raise it with `--max-memory`, or keep the sets sparse"),
+    row("E0492", Execution, "interrupted", "the run was stopped by Ctrl-C, or by the system; run it again"),
     row("E0499", Execution, "defect of bmod", "something went wrong inside of bmod; please report it with the model"),
 ];
 

@@ -16,8 +16,15 @@ impl Machine<'_> {
         match written {
             Ok(path) => {
                 let path = path.display().to_string();
-                if !self.report().files.contains(&path) {
-                    self.report().files.push(path);
+                let stopped = self.stopped();
+                let mut report = self.report();
+                // A file that is written after the end holds what was there then.
+                report.partial.retain(|p| *p != path);
+                if stopped {
+                    report.partial.push(path.clone());
+                }
+                if !report.files.contains(&path) {
+                    report.files.push(path);
                 }
                 true
             }

@@ -10,6 +10,7 @@ pub mod random;
 
 mod attributes;
 mod constant;
+mod count;
 mod draw;
 mod eval;
 mod examine;
@@ -114,6 +115,7 @@ pub struct Machine<'h> {
     /// What takes its time now, for who waits.
     pub(crate) doing: RefCell<String>,
     stop: Cell<bool>,
+    interrupted: Cell<bool>,
     /// Bytes that the run may take: what was asked for, or what the machine has.
     memory: Option<usize>,
     /// The text itself shows numbers.
@@ -189,6 +191,7 @@ impl<'h> Machine<'h> {
             ticks: Cell::new(0),
             doing: RefCell::new(STATEMENTS.into()),
             stop: Cell::new(false),
+            interrupted: Cell::new(false),
             shows_numbers: program.shows_numbers,
             loops: 0,
             started,
@@ -203,6 +206,7 @@ impl<'h> Machine<'h> {
         let mut frame = vec![0; self.slots];
         self.write_early_files();
         let flow = self.block(code, &mut frame);
+        self.interrupted();
         self.close_put_files();
         flow
     }
@@ -233,7 +237,7 @@ impl<'h> Machine<'h> {
                 self.failed_statements.set(failed + 1);
             }
         }
-        if list.len() < MAX_KEPT_ERRORS && !again {
+        if (list.len() < MAX_KEPT_ERRORS || self.stop.get()) && !again {
             list.push(d);
         }
     }
@@ -295,14 +299,10 @@ impl<'h> Machine<'h> {
 
     #[cold]
     fn check_limits(&self) -> bool {
-        if self.stop.get() {
+        if self.stop.get() || self.interrupted() {
             return false;
         }
         let host = self.host.borrow();
-        if host.interrupted() {
-            self.stop.set(true);
-            return false;
-        }
         if host.elapsed() > self.options.time_limit {
             self.stop.set(true);
             drop(host);
@@ -331,6 +331,20 @@ impl<'h> Machine<'h> {
         drop(host);
         self.host().progress(&self.doing.borrow());
         true
+    }
+
+    /// Whether the user has stopped the run: it ends here, and says so.
+    pub(crate) fn interrupted(&self) -> bool {
+        if !self.stop.get() && self.host.borrow().interrupted() {
+            self.stop.set(true);
+            self.interrupted.set(true);
+            Diagnostic::execution("E0492", self.options.at.get())
+                .says("the run was interrupted")
+                .label("stopped here")
+                .help("what was computed before is kept; nothing behind this place was carried out")
+                .note(self);
+        }
+        self.interrupted.get()
     }
 
     /// Whether the run was stopped by a limit or by the user.

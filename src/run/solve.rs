@@ -86,9 +86,10 @@ impl<'h> Machine<'h> {
 
     /// A model option: the model's own attribute, the `option` statement, or the default.
     pub(super) fn model_option(&self, model: SymbolId, name: &'static str, default: f64) -> f64 {
-        self.models
-            .get(&model)
-            .and_then(|m| m.get(name))
+        // What is `na` was not said: so reads what was never assigned.
+        let own = self.models.get(&model).and_then(|m| m.get(name));
+        own.map(number)
+            .filter(|x| !x.is_nan())
             .or_else(|| self.options.number(name))
             .unwrap_or(default)
     }
@@ -242,7 +243,7 @@ impl<'h> Machine<'h> {
                 answer: a,
             });
         }
-        match self.host().interrupted() {
+        match self.interrupted() {
             true => Flow::Stop,
             false => Flow::Next,
         }
@@ -337,7 +338,7 @@ impl<'h> Machine<'h> {
         let standard = Aim::default();
         let stated = |name| {
             let of_model = self.models.get(&model).and_then(|m| m.get(name));
-            of_model.or_else(|| self.options.number(name))
+            of_model.map(number).or_else(|| self.options.number(name))
         };
         let number = |name, default| {
             let value: f64 = stated(name).unwrap_or(default);
