@@ -2,7 +2,6 @@
 //! `--NAME=VALUE`, and exit status 1 for a wrong command line.
 
 use std::ffi::OsString;
-use std::io::Write;
 use std::path::PathBuf;
 use std::sync::LazyLock;
 
@@ -596,7 +595,7 @@ fn solver_options(backend: Option<&str>) -> Parsed {
         return Parsed::Exit(USAGE);
     }
     // A reader that has gone away is no error of ours.
-    let _ = std::io::stdout().write_all(option::text(&tables, backend.is_some()).as_bytes());
+    super::host::Output::Standard.write(&option::text(&tables, backend.is_some()));
     Parsed::Exit(0)
 }
 

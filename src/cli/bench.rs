@@ -7,7 +7,7 @@ use indicatif::ProgressBar;
 
 use super::args::{BenchArgs, INTERRUPT, USAGE};
 use super::commands::{Status, carry_out_silently, complain, name, options, unwritten, write_file};
-use super::host::{interrupted, styled};
+use super::host::{interrupted, say, styled};
 use crate::report::figure::png;
 use crate::report::study;
 use crate::run::Options;
@@ -86,7 +86,7 @@ pub(super) fn bench(a: &BenchArgs) -> Status {
             }
         }
     });
-    let mut status = finished?.end.exit();
+    let mut status = finished.end.exit();
     if interrupted() {
         status = INTERRUPT;
     }
@@ -95,10 +95,10 @@ pub(super) fn bench(a: &BenchArgs) -> Status {
         return Err(complain(USAGE, message));
     }
     if studies.is_empty() && status == 0 {
-        println!("Nothing was solved.");
+        say!("Nothing was solved.");
     }
     for (k, (title, s)) in studies.iter().enumerate() {
-        println!("{}", study::table(title, s));
+        say!("{}", study::table(title, s));
         let svg = || study::svg(title, s);
         let csv: &dyn Fn() -> Result<Vec<u8>, String> = &|| Ok(study::csv(s).into_bytes());
         let files = [

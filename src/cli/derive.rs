@@ -58,7 +58,7 @@ pub(super) fn studied(
             }
         }
     });
-    Ok(finished?.end.exit().max(status))
+    Ok(finished.end.exit().max(status))
 }
 
 /// Options of a run whose solve is studied.

@@ -41,20 +41,51 @@ pub enum Output {
 }
 
 impl Output {
-    /// Writes; a reader that has gone away (`| head`) is no error of ours.
+    /// Writes; see [`unwritten_output`].
     pub(super) fn write(self, text: &str) {
-        let _ = match self {
+        let written = match self {
             Self::Standard => std::io::stdout().write_all(text.as_bytes()),
             Self::Error => std::io::stderr().write_all(text.as_bytes()),
             Self::Quiet => Ok(()),
         };
+        keep_failure(written);
     }
 }
+
+/// What could not be written to standard output or standard error first, in the system's words.
+static UNWRITTEN: Mutex<Option<String>> = Mutex::new(None);
+
+fn keep_failure(written: std::io::Result<()>) {
+    if let Err(e) = written
+        // A reader that has gone away (`| head`) is no error of ours.
+        && e.kind() != std::io::ErrorKind::BrokenPipe
+    {
+        let mut first = UNWRITTEN.lock().unwrap_or_else(PoisonError::into_inner);
+        first.get_or_insert(e.to_string());
+    }
+}
+
+/// At the end: why some of the output is lost, if it is.
+pub(super) fn unwritten_output() -> Option<String> {
+    keep_failure(std::io::stdout().flush());
+    UNWRITTEN
+        .lock()
+        .unwrap_or_else(PoisonError::into_inner)
+        .take()
+}
+
+/// Writes a line to standard output.
+macro_rules! say {
+    ($($text:tt)*) => {
+        $crate::cli::host::Output::Standard.write(&(format!($($text)*) + "\n"))
+    };
+}
+pub(super) use say;
 
 /// Files of this machine, this terminal, this clock.
 pub struct SystemHost {
     files: Files,
-    out: PathBuf,
+    out: Option<PathBuf>,
     output: Output,
     start: Instant,
     bar: Option<ProgressBar>,
@@ -116,12 +147,12 @@ fn end_interrupted() -> ! {
 }
 
 impl SystemHost {
-    /// For a model file, an output folder (made when something is written), and further folders
+    /// For a model file, an output folder (made when something is written; without one nothing is), and further folders
     /// that may be read.
-    pub fn new(model: &Path, out: &Path, allow_read: &[PathBuf], output: Output) -> Self {
+    pub fn new(model: &Path, out: Option<&Path>, allow_read: &[PathBuf], output: Output) -> Self {
         let files = Files::new(model, allow_read);
         Self {
-            out: files.current.join(out),
+            out: out.map(|out| files.current.join(out)),
             files,
             output,
             start: Instant::now(),
@@ -196,9 +227,12 @@ impl Host for SystemHost {
 
     fn write(&mut self, path: &str, bytes: &[u8]) -> Result<PathBuf, HostError> {
         let wanted = tidy(Path::new(path));
+        let Some(out) = &self.out else {
+            return Ok(wanted);
+        };
         let outside = || HostError::Outside(PathBuf::from(path));
-        std::fs::create_dir_all(&self.out).map_err(other)?;
-        let root = self.out.canonicalize().map_err(other)?;
+        std::fs::create_dir_all(out).map_err(other)?;
+        let root = out.canonicalize().map_err(other)?;
         let target = root.join(&wanted);
         let goes_up = |c: Component| matches!(c, Component::ParentDir);
         if wanted.components().any(goes_up) || !target.starts_with(&root) {
@@ -281,7 +315,7 @@ mod tests {
         fs::write(p.join("model/bad.blk"), b"ab\xff").expect("written");
         fs::write(p.join("secret.blk"), "secret").expect("written");
         let model = p.join("model/m.blk");
-        let host = SystemHost::new(&model, &p.join("out"), &[], Output::Quiet).sandbox(true);
+        let host = SystemHost::new(&model, Some(&p.join("out")), &[], Output::Quiet).sandbox(true);
         (root, host)
     }
 
@@ -333,9 +367,9 @@ mod tests {
             ));
         }
         let allow = [root.path().to_path_buf()];
-        let mut open = SystemHost::new(&main, Path::new("."), &[], Output::Quiet);
+        let mut open = SystemHost::new(&main, None, &[], Output::Quiet);
         assert!(open.read("../secret.blk", Some(&known)).is_ok());
-        let mut open = SystemHost::new(&main, Path::new("."), &allow, Output::Quiet).sandbox(true);
+        let mut open = SystemHost::new(&main, None, &allow, Output::Quiet).sandbox(true);
         assert_eq!(
             open.read("../secret.blk", Some(&known)).expect("allowed").1,
             "secret"

@@ -5,7 +5,7 @@
 
 use super::args::{EXECUTION, INTERRUPT, SweepArgs, USAGE};
 use super::commands::{Status, complain, stem};
-use super::host::{interrupted, styled, write_whole};
+use super::host::{interrupted, say, styled, write_whole};
 use crate::{Control, Error, Model, ModelStatus, Options, Run, SymbolKind};
 use indicatif::ProgressBar;
 use serde_json::{Map, Value, json};
@@ -397,7 +397,7 @@ fn summary(rows: &[&Row], wanted: usize, folder: &Path) -> u8 {
         *counts.entry(word.replace('_', " ")).or_default() += 1;
     }
     let counts: Vec<String> = counts.iter().map(|(w, n)| format!("{n} {w}")).collect();
-    println!(
+    say!(
         "{} of {wanted} runs: {}; see {}",
         rows.len(),
         counts.join(", "),
@@ -461,7 +461,7 @@ fn slurm(a: &SweepArgs, jobs: usize, points: usize) -> Result<u8, String> {
         p if p.contains(' ') => quoted(p.into_owned()),
         p => p.into_owned(),
     };
-    println!(
+    say!(
         "written: {}; submit it with `sbatch {script}`",
         path.display()
     );

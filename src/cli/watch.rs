@@ -8,7 +8,7 @@ use std::time::{Duration, SystemTime};
 
 use super::args::{EXECUTION, INTERRUPT, WatchArgs};
 use super::commands::{Status, complain};
-use super::host::{ENDS_ITSELF, interrupted};
+use super::host::{ENDS_ITSELF, interrupted, say};
 
 /// How often the files are looked at.
 const INTERVAL: Duration = Duration::from_millis(200);
@@ -45,7 +45,7 @@ pub(super) fn watch(a: &WatchArgs) -> Status {
             break;
         }
         let shown = folder.display();
-        println!("\nwaiting for a change in {shown} (Ctrl-C ends)");
+        say!("\nwaiting for a change in {shown} (Ctrl-C ends)");
         // What the run itself wrote is no change; what was saved meanwhile is.
         seen = (modified(&a.file) == saved).then(|| stamp(&folder));
     }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::args::WhyArgs;
-use super::commands::{Status, Task, carry_out, name, options, temporary_folder, write_report};
+use super::commands::{Status, Task, carry_out, name, options, write_report};
 use super::host::Output;
 use crate::report::summary;
 use crate::run::Options;
@@ -18,16 +18,14 @@ pub(super) fn why(a: &WhyArgs) -> Status {
         ..options(&a.solve)?
     };
     // The model's own output and files are not wanted here.
-    let out = temporary_folder()?;
     let task = Task {
-        out: out.path(),
         json: a.json.as_deref(),
         ..Task::new(&a.model, Output::Quiet)
     };
     let finished = carry_out(task, options, &mut |_| {});
     let status = finished.end.exit();
     if a.json.as_deref() != Some(Path::new("-")) {
-        print!("{}", text(&finished));
+        Output::Standard.write(&text(&finished));
     }
     Ok(match &a.json {
         Some(path) => status.max(write_report(finished, &name(&a.model), path)),

@@ -66,6 +66,9 @@ impl Machine<'_> {
         }
         self.take_collected();
         self.tidy(c);
+        if self.options.list.is_some() {
+            self.follow_unsolved(c);
+        }
         match &c.kind {
             CodeKind::Assign(a) => match a.in_turn {
                 true => self.assign_in_turn(a, frame),
@@ -73,22 +76,32 @@ impl Machine<'_> {
             },
             CodeKind::Loop(d, anew, body) => return self.run_loop(d, anew, body, frame),
             CodeKind::While(cond, body) => {
-                while truth(self.eval(cond, frame)) {
+                let outer = self.take_undecided();
+                while !self.waits(cond) && truth(self.eval(cond, frame)) {
                     if let ControlFlow::Break(flow) = self.turn(body, frame) {
                         return flow;
                     }
                     self.tidy(c);
+                    if self.take_undecided() {
+                        break;
+                    }
                 }
+                self.leave_undecided(outer);
             }
-            CodeKind::Repeat(body, until) => loop {
-                if let ControlFlow::Break(flow) = self.turn(body, frame) {
-                    return flow;
+            CodeKind::Repeat(body, until) => {
+                let outer = self.take_undecided();
+                loop {
+                    if let ControlFlow::Break(flow) = self.turn(body, frame) {
+                        return flow;
+                    }
+                    self.tidy(c);
+                    if self.take_undecided() || self.waits(until) || truth(self.eval(until, frame))
+                    {
+                        break;
+                    }
                 }
-                self.tidy(c);
-                if truth(self.eval(until, frame)) {
-                    break;
-                }
-            },
+                self.leave_undecided(outer);
+            }
             CodeKind::For(f) => return self.run_for(c.span, f, frame),
             CodeKind::If(arms, otherwise) => {
                 for (cond, body) in arms {
@@ -280,6 +293,7 @@ impl Machine<'_> {
                 Target::Errors => {
                     if let Some(n) = count("`execError`") {
                         self.failed_statements.set(n);
+                        self.errors_assigned.set(Some(value.span));
                     }
                 }
                 Target::MostErrors => {

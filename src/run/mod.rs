@@ -19,6 +19,7 @@ mod exec;
 mod files;
 mod generate;
 mod grid;
+mod listing;
 mod option_file;
 mod options;
 mod put;
@@ -100,6 +101,8 @@ pub struct Machine<'h> {
     pub put: options::PutState,
     /// Files that data go to and come from.
     transfer: exchange::ExchangeState,
+    /// What `bmod list` leaves out.
+    unsolved: listing::Unsolved,
     host: RefCell<&'h mut dyn Host>,
     random: RefCell<Random>,
     diagnostics: RefCell<Vec<Diagnostic>>,
@@ -107,6 +110,8 @@ pub struct Machine<'h> {
     errors: Cell<usize>,
     /// Statements that had some, as `execError` counts them.
     failed_statements: Cell<usize>,
+    /// What assigned that number last.
+    errors_assigned: Cell<Option<Span>>,
     /// So many of them the run may have and go on: `maxExecError`.
     most_errors: usize,
     /// What is assigned just now, for messages.
@@ -181,11 +186,13 @@ impl<'h> Machine<'h> {
             solves_seen: 0,
             put: options::PutState::default(),
             transfer: exchange::ExchangeState::default(),
+            unsolved: listing::Unsolved::default(),
             host: RefCell::new(host),
             random: RefCell::new(random),
             diagnostics: RefCell::new(Vec::new()),
             errors: Cell::new(0),
             failed_statements: Cell::new(0),
+            errors_assigned: Cell::new(None),
             most_errors: 0,
             current: RefCell::new(None),
             ticks: Cell::new(0),
@@ -208,6 +215,7 @@ impl<'h> Machine<'h> {
         let flow = self.block(code, &mut frame);
         self.interrupted();
         self.close_put_files();
+        self.explain_assigned_errors();
         flow
     }
 
@@ -269,6 +277,24 @@ impl<'h> Machine<'h> {
     /// Whether there were more execution errors than `maxExecError` lets pass.
     pub fn failed(&self) -> bool {
         self.statements_failed() > self.most_errors
+    }
+
+    /// A run that fails by what was assigned to `execError` alone says so.
+    pub(crate) fn explain_assigned_errors(&self) {
+        let list = self.diagnostics.borrow();
+        let explained = list.iter().any(|d| d.severity == Severity::Execution);
+        drop(list);
+        let assigned = self.errors_assigned.take();
+        if let (true, false, Some(span)) = (self.failed(), explained, assigned) {
+            let (errors, most) = (self.statements_failed(), self.most_errors);
+            Diagnostic::execution("E0485", span)
+                .says(format!(
+                    "`execError` is {errors}, and `maxExecError` {most}: the run fails"
+                ))
+                .label("assigned here")
+                .help("leave the assignment out, or write `execError = 0;` behind it")
+                .note(self);
+        }
     }
 
     /// The symbol of a table.

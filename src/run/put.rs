@@ -190,7 +190,7 @@ impl Machine<'_> {
             return;
         }
         self.write_file(&name, text.as_bytes(), span);
-        self.map.remember(&name, text.into_bytes());
+        self.map.remember(&name, text.into_bytes(), span);
     }
 
     /// Writes what is still open, in the order of declaration.

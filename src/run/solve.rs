@@ -165,6 +165,7 @@ impl<'h> Machine<'h> {
         if let Some(list) = self.options.list.clone() {
             self.print_listing(&name, &generated, &list);
             self.report().solves.push(self.not_solved(s, &generated));
+            self.leave_unsolved(s.model, &generated, span);
             return Flow::Next;
         }
         let choice = self.options.texts.get(s.using.name()).cloned();
@@ -299,6 +300,7 @@ impl<'h> Machine<'h> {
     /// After an error the run ends here; errors that `maxExecError` lets pass skip the solve.
     fn unsolved(&mut self, s: &SolveCode, span: Span) -> Flow {
         if self.failed() {
+            self.explain_assigned_errors();
             self.consequence(span, "so this is not solved, and the run ends here");
             return Flow::Stop;
         }
