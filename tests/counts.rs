@@ -50,11 +50,11 @@ const STATEMENTS: &[(bool, &str)] = &[
     (false, "m.bRatio = NUM; solve m using lp minimizing z;"),
     (
         false,
-        "figure g { points(i) x = ord(i), y = 1, size = NUM; size width = NUM; } draw g;",
+        "figure g { points(i) x = ord(i), y = 1, size = NUM; size width = NUM; }; draw g;",
     ),
     (
         false,
-        "figure g { points(i) x = NUM, y = 1, width = NUM; xaxis min = NUM; } draw g;",
+        "figure g { points(i) x = NUM, y = 1, width = NUM; xaxis min = NUM; }; draw g;",
     ),
 ];
 
