@@ -27,7 +27,7 @@ fn processor() -> f64 {
 fn wall(n: usize) -> ([f64; 3], usize) {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let path = root.join("benches/models/wall.blk");
-    let mut host = SystemHost::new(&path, Path::new("."), &[root.into()], Output::Quiet);
+    let mut host = SystemHost::new(&path, None, &[root.into()], Output::Quiet);
     let options = Options {
         quiet: true,
         collect: false,

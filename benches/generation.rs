@@ -19,7 +19,7 @@ fn generate(file: &str, defines: &[(&str, String)]) -> usize {
         .join("benches/models")
         .join(file);
     let folders = [Path::new(env!("CARGO_MANIFEST_DIR")).to_path_buf()];
-    let mut host = SystemHost::new(&path, Path::new("."), &folders, Output::Quiet);
+    let mut host = SystemHost::new(&path, None, &folders, Output::Quiet);
     let options = Options {
         quiet: true,
         collect: false,

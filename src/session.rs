@@ -68,6 +68,7 @@ pub fn execute(
     machine.code = code;
     inspect(&mut machine);
     let end = match () {
+        () if machine.interrupted() => RunStatus::Interrupted,
         () if machine.aborted() => RunStatus::Aborted,
         () if machine.failed() => RunStatus::ExecutionError,
         () => RunStatus::Ok,

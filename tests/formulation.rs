@@ -89,7 +89,7 @@ fn derive_text(text: &str) -> Derived {
 }
 
 fn derive_file(file: &Path, allowed: &[PathBuf]) -> Derived {
-    let mut host = SystemHost::new(file, Path::new("."), allowed, Output::Quiet);
+    let mut host = SystemHost::new(file, None, allowed, Output::Quiet);
     let name = file.to_string_lossy();
     let found = look(&mut host, &name, StudyChoice::default(), &mut |m, p| {
         derived(m, &p)
@@ -154,7 +154,7 @@ fn models_of_many_kinds_are_derived_and_run() {
     let mut wrong = Vec::new();
     for file in &list {
         let name = file.file_name().unwrap_or_default().to_string_lossy();
-        let mut host = SystemHost::new(file, Path::new("."), &[], Output::Quiet);
+        let mut host = SystemHost::new(file, None, &[], Output::Quiet);
         let path = file.to_string_lossy();
         let found = look(&mut host, &path, StudyChoice::default(), &mut |m, p| {
             let objective = p
@@ -689,7 +689,7 @@ equation obj, e(i); e(i).. x(i) =g= ord(i);
 #[test]
 fn a_derived_model_may_include_the_text() {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("models/teaching/diet.blk");
-    let mut host = SystemHost::new(&file, Path::new("."), &[], Output::Quiet);
+    let mut host = SystemHost::new(&file, None, &[], Output::Quiet);
     let name = file.to_string_lossy();
     let model = look(&mut host, &name, StudyChoice::default(), &mut |m, p| {
         let f = dual::dual(Scope::of(m), &p, false).expect("a dual");
@@ -1202,7 +1202,7 @@ fn the_kinematic_theorem_written_by_hand_is_the_dual_of_the_static_one() {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("models/wall.blk");
     let mut found = Vec::new();
     for model in ["static", "kinematic"] {
-        let mut host = SystemHost::new(&file, Path::new("."), &[], Output::Quiet);
+        let mut host = SystemHost::new(&file, None, &[], Output::Quiet);
         let name = file.to_string_lossy();
         let all = look(
             &mut host,

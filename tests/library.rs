@@ -215,6 +215,8 @@ fn limits_and_cancelling() {
     control.cancel();
     let run = model.run(&Options::default().control(&control));
     assert!(run.was_stopped() && control.is_cancelled());
+    assert_eq!(run.status(), RunStatus::Interrupted);
+    assert_eq!(run.diagnostics()[0].code, "E0492");
 }
 
 #[test]

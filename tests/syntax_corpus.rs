@@ -95,7 +95,7 @@ fn read_data(parser: &Parser<'_>, s: &Stmt) -> Vec<String> {
 /// Parses a file; gives what is wrong with it, and the number of statements.
 fn parse(path: &Path, folder: &Path) -> (Vec<String>, usize) {
     let allowed = [folder.to_path_buf()];
-    let mut disk = SystemHost::new(path, Path::new("."), &allowed, Output::Quiet);
+    let mut disk = SystemHost::new(path, None, &allowed, Output::Quiet);
     let options = PreprocessOptions {
         defines: Vec::new(),
         slash_comments: path.extension().is_some_and(|e| e == "blk"),

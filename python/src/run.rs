@@ -126,7 +126,7 @@ type Records<'py> = (
 
 #[pymethods]
 impl Run {
-    /// `ok`, `compilation_error`, `execution_error` or `aborted`.
+    /// `ok`, `compilation_error`, `execution_error`, `aborted` or `interrupted`.
     #[getter]
     fn status(&self) -> &'static str {
         match self.run.status() {
@@ -134,6 +134,7 @@ impl Run {
             bmod::RunStatus::CompilationError => "compilation_error",
             bmod::RunStatus::ExecutionError => "execution_error",
             bmod::RunStatus::Aborted => "aborted",
+            bmod::RunStatus::Interrupted => "interrupted",
         }
     }
 

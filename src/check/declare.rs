@@ -290,6 +290,18 @@ impl Compiler {
                     .help("declare the set first: `set i / … /; alias(i, j);`")
                     .fail(self);
             };
+            if let [alone] = &group[..] {
+                Diagnostic::warning("E0380", alone.span)
+                    .says(format!(
+                        "`alias({0})` gives `{0}` no other name",
+                        alone.name
+                    ))
+                    .help(format!(
+                        "name the other one too: `alias({}, j);`",
+                        alone.name
+                    ))
+                    .report(self);
+            }
             for n in group {
                 if &*n.name == "*" {
                     continue;

@@ -154,7 +154,7 @@ pub fn compile(
     mut options: PreprocessOptions,
     solvers: &'static Solvers,
 ) -> Result<Program, Box<(Diagnostic, SourceMap)>> {
-    let max_memory = options.max_memory;
+    let (max_memory, warns_of_unused) = (options.max_memory, options.warns_of_unused);
     let inputs = std::mem::take(&mut options.inputs);
     let mut parser =
         Parser::new(host, path, options).map_err(|u| Box::new((u.diagnostic, u.map)))?;
@@ -202,6 +202,9 @@ pub fn compile(
         d.as_error().report(&mut c);
     }
     c.unused_inputs();
+    if warns_of_unused {
+        c.diagnostics.extend(parser.warnings_of_unused());
+    }
     c.clear_errors(parser.cleared_errors());
     c.declared_below(parser.map());
     let doubtful = std::mem::take(&mut c.doubtful);

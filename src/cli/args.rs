@@ -2,7 +2,6 @@
 //! `--NAME=VALUE`, and exit status 1 for a wrong command line.
 
 use std::ffi::OsString;
-use std::io::Write;
 use std::path::PathBuf;
 use std::sync::LazyLock;
 
@@ -16,6 +15,8 @@ pub const USAGE: u8 = 1;
 pub const COMPILE: u8 = 2;
 /// Exit status: an execution error or an abort.
 pub const EXECUTION: u8 = 3;
+/// Exit status: interrupted, as shells say it.
+pub const INTERRUPT: u8 = 130;
 
 /// Solve algebraic models written in the GAMS tradition.
 #[derive(Parser, Debug, Clone)]
@@ -26,7 +27,8 @@ pub const EXECUTION: u8 = 3;
     subcommand_required = true,
     arg_required_else_help = true,
     after_help = "Exit status: 0 it ran; 1 the command line is wrong; 2 the text does not compile; \
-                  3 an execution error or an abort.\nA model that is solved to \"infeasible\" is an \
+                  3 an execution error or an abort; 130 it was \
+                  interrupted (Ctrl-C, SIGTERM).\nA model that is solved to \"infeasible\" is an \
                   answer, not a failure: 0."
 )]
 pub struct Cli {
@@ -593,7 +595,7 @@ fn solver_options(backend: Option<&str>) -> Parsed {
         return Parsed::Exit(USAGE);
     }
     // A reader that has gone away is no error of ours.
-    let _ = std::io::stdout().write_all(option::text(&tables, backend.is_some()).as_bytes());
+    super::host::Output::Standard.write(&option::text(&tables, backend.is_some()));
     Parsed::Exit(0)
 }
 

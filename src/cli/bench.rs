@@ -5,9 +5,9 @@ use std::time::Instant;
 
 use indicatif::ProgressBar;
 
-use super::args::{BenchArgs, USAGE};
+use super::args::{BenchArgs, INTERRUPT, USAGE};
 use super::commands::{Status, carry_out_silently, complain, name, options, unwritten, write_file};
-use super::host::{interrupted, styled};
+use super::host::{interrupted, say, styled};
 use crate::report::figure::png;
 use crate::report::study;
 use crate::run::Options;
@@ -86,16 +86,19 @@ pub(super) fn bench(a: &BenchArgs) -> Status {
             }
         }
     });
-    let mut status = finished?.end.exit();
+    let mut status = finished.end.exit();
+    if interrupted() {
+        status = INTERRUPT;
+    }
     if let Some((k, n)) = asked_beyond {
         let message = format!("there is no solve {k}: the model has {n}");
         return Err(complain(USAGE, message));
     }
     if studies.is_empty() && status == 0 {
-        println!("Nothing was solved.");
+        say!("Nothing was solved.");
     }
     for (k, (title, s)) in studies.iter().enumerate() {
-        println!("{}", study::table(title, s));
+        say!("{}", study::table(title, s));
         let svg = || study::svg(title, s);
         let csv: &dyn Fn() -> Result<Vec<u8>, String> = &|| Ok(study::csv(s).into_bytes());
         let files = [

@@ -1,13 +1,15 @@
 //! What the commands do.
 
-use std::io::{IsTerminal, Write};
+use std::io::IsTerminal;
 use std::path::Path;
 
 use super::args::{
     Cli, Color, Command, EXECUTION, ListArgs, MessageFormat, ModelArgs, RunArgs, SolveArgs, USAGE,
     completions, manual,
 };
-use super::host::{Output, SystemHost, watch_ctrl_c, write_whole};
+use super::host::{
+    ENDS_ITSELF, Output, SystemHost, say, unwritten_output, watch_signals, write_whole,
+};
 use super::watchdog::{Watch, Watchdog};
 use crate::formulation::derived::Kind;
 use crate::report::diagnostic::{Diagnostic, json_lines};
@@ -24,7 +26,7 @@ pub(super) type Status = Result<u8, u8>;
 
 /// Says what is wrong; gives the exit status.
 pub(super) fn complain(status: u8, message: impl std::fmt::Display) -> u8 {
-    eprintln!("bmod: {message}");
+    Output::Error.write(&format!("bmod: {message}\n"));
     status
 }
 
@@ -35,6 +37,10 @@ pub fn execute(cli: &Cli) -> u8 {
         Color::Always => Some(true),
         Color::Never => Some(false),
     });
+    // An editor's server ends as the system ends processes.
+    if !matches!(cli.command, Command::Lsp { .. }) {
+        watch_signals();
+    }
     let status = match &cli.command {
         Command::Run(a) => run(a),
         Command::Check(a) => Ok(check(a)),
@@ -61,7 +67,7 @@ pub fn execute(cli: &Cli) -> u8 {
             )
         }),
         Command::Completions { shell } => {
-            let _ = std::io::stdout().write_all(&completions(*shell));
+            Output::Standard.write(&String::from_utf8_lossy(&completions(*shell)));
             Ok(0)
         }
     };
@@ -76,7 +82,7 @@ fn check(a: &ModelArgs) -> u8 {
     let finished = carry_out(task, Options::default(), &mut |_| {});
     let silent = finished.end == RunStatus::Ok && finished.diagnostics.is_empty();
     if silent && a.message_format == MessageFormat::Human {
-        println!("{}: nothing is wrong", a.file.display());
+        say!("{}: nothing is wrong", a.file.display());
     }
     finished.end.exit()
 }
@@ -93,8 +99,8 @@ pub(super) fn stem(m: &ModelArgs) -> std::borrow::Cow<'_, str> {
 /// A model to be run or checked.
 pub(super) struct Task<'a> {
     pub model: &'a ModelArgs,
-    /// Folder for the files that the model writes.
-    pub out: &'a Path,
+    /// Folder for the files that the model writes; without one they are not written.
+    pub out: Option<&'a Path>,
     /// Where what it prints goes.
     pub output: Output,
     /// Nothing is carried out.
@@ -107,7 +113,7 @@ impl<'a> Task<'a> {
     pub(super) fn new(model: &'a ModelArgs, output: Output) -> Self {
         Self {
             model,
-            out: Path::new("."),
+            out: None,
             output,
             check_only: false,
             json: None,
@@ -122,7 +128,7 @@ pub(super) fn carry_out(
     options: Options,
     after: &mut dyn FnMut(&mut Machine),
 ) -> Finished {
-    watch_ctrl_c();
+    ENDS_ITSELF.store(true, std::sync::atomic::Ordering::SeqCst);
     let model = task.model;
     let mut host = SystemHost::new(&model.file, task.out, &model.allow_read, task.output)
         .sandbox(model.sandbox);
@@ -154,29 +160,20 @@ fn preprocess(model: &ModelArgs, max_memory: Option<usize>) -> PreprocessOptions
     let extension = model.file.extension();
     PreprocessOptions {
         defines: model.define.clone(),
+        warns_of_unused: true,
         slash_comments: extension.is_some_and(|e| e.eq_ignore_ascii_case("blk")),
         max_memory,
         ..PreprocessOptions::default()
     }
 }
 
-/// A folder that goes with the command.
-pub(super) fn temporary_folder() -> Result<tempfile::TempDir, u8> {
-    tempfile::tempdir().map_err(|_| complain(EXECUTION, "no folder for temporary files"))
-}
-
-/// The same for the answers only: what the model prints and writes is not kept.
+/// The same for the answers only: what the model prints is not shown.
 pub(super) fn carry_out_silently(
     model: &ModelArgs,
     options: Options,
     after: &mut dyn FnMut(&mut Machine),
-) -> Result<Finished, u8> {
-    let out = temporary_folder()?;
-    let task = Task {
-        out: out.path(),
-        ..Task::new(model, Output::Quiet)
-    };
-    Ok(carry_out(task, options, after))
+) -> Finished {
+    carry_out(Task::new(model, Output::Quiet), options, after)
 }
 
 /// Compiles a model, tells what is wrong with it, and hands it on if nothing is; the exit status.
@@ -184,8 +181,7 @@ pub(super) fn compiled(
     model: &ModelArgs,
     f: &mut dyn FnMut(crate::check::Program, &mut dyn crate::host::Host) -> Status,
 ) -> Status {
-    let (file, none) = (&model.file, Path::new("."));
-    let mut host = SystemHost::new(file, none, &model.allow_read, Output::Quiet);
+    let mut host = SystemHost::new(&model.file, None, &model.allow_read, Output::Quiet);
     let preprocess = preprocess(model, None);
     let (found, map) = match crate::check::compile(&mut host, &name(model), preprocess, &SOLVERS) {
         Err(e) => (vec![e.0], e.1),
@@ -208,8 +204,7 @@ fn tell(list: &[crate::diag::Diagnostic], map: &SourceMap, format: MessageFormat
         }
         MessageFormat::Json => json_lines(list, map),
     };
-    // Who reads may have gone: `bmod check m.blk 2>&1 | head`.
-    let _ = std::io::stderr().write_all(text.as_bytes());
+    Output::Error.write(&text);
 }
 
 /// Options as the command line has them; Err: the exit status, after what is wrong was said.
@@ -246,7 +241,7 @@ fn run(a: &RunArgs) -> Status {
     let file = name(&a.model);
     let mut solutions = None;
     let task = Task {
-        out: &a.out,
+        out: Some(&a.out),
         json: a.json.as_deref(),
         ..Task::new(&a.model, output)
     };
@@ -257,7 +252,13 @@ fn run(a: &RunArgs) -> Status {
     });
     let mut status = finished.end.exit();
     if !a.quiet && !finished.report.files.is_empty() {
-        output.write(&format!("written: {}\n", finished.report.files.join(", ")));
+        let Report { files, partial, .. } = &finished.report;
+        let mark = |f: &String| match partial.contains(f) {
+            true => format!("{f} (partial)"),
+            false => f.clone(),
+        };
+        let files: Vec<String> = files.iter().map(mark).collect();
+        output.write(&format!("written: {}\n", files.join(", ")));
     }
     if let (Some(path), Some(text)) = (&a.solution, &solutions) {
         status = status.max(write_to(path, text));
@@ -296,7 +297,11 @@ pub(super) fn write_report(finished: Finished, file: &str, path: &Path) -> u8 {
         diagnostics: Diagnostic::all(&finished.diagnostics, &finished.map),
         ..finished.report.of(file)
     };
-    if let Some(k) = report.diagnostics.iter().position(|d| d.code == "E0490") {
+    if let Some(k) = report
+        .diagnostics
+        .iter()
+        .position(|d| ["E0490", "E0492"].contains(&d.code))
+    {
         let left_out = report.shorten();
         report.diagnostics[k].message.push_str(&left_out);
     }
@@ -324,8 +329,15 @@ fn list(a: &ListArgs) -> u8 {
 
 /// Runs the command line: the arguments with the program's name first.
 pub fn main(arguments: impl IntoIterator<Item = std::ffi::OsString>) -> u8 {
-    match super::args::parse(arguments) {
+    let status = match super::args::parse(arguments) {
         super::args::Parsed::Exit(status) => status,
         super::args::Parsed::Run(cli) => super::guarded(USAGE, || execute(&cli)),
+    };
+    match unwritten_output() {
+        None => status,
+        Some(why) => {
+            let message = format!("the output could not be written: {why}");
+            complain(status.max(EXECUTION), message)
+        }
     }
 }

@@ -45,16 +45,20 @@ pub(super) fn studied(
         ..study_options(solve, chosen)?
     };
     let mut status = 0;
-    let finished = carry_out_silently(model, options, &mut |m| match study::chosen(m)
-        .and_then(|(primal, studied)| f(m, primal, studied))
-    {
-        Ok(s) => status = s,
-        Err(d) => {
-            m.say(*d);
-            status = EXECUTION;
+    let finished = carry_out_silently(model, options, &mut |m| {
+        // Of half a run nothing is said.
+        if m.interrupted() {
+            return;
+        }
+        match study::chosen(m).and_then(|(primal, studied)| f(m, primal, studied)) {
+            Ok(s) => status = s,
+            Err(d) => {
+                m.say(*d);
+                status = EXECUTION;
+            }
         }
     });
-    Ok(finished?.end.exit().max(status))
+    Ok(finished.end.exit().max(status))
 }
 
 /// Options of a run whose solve is studied.

@@ -1,6 +1,6 @@
 //! `bmod explain`: a model and its answer in words.
 
-use super::args::{ExplainArgs, WhyArgs};
+use super::args::{ExplainArgs, INTERRUPT, WhyArgs};
 use super::commands::Status;
 use super::derive::{studied, tell, width};
 use crate::formulation::explain::of;
@@ -25,7 +25,7 @@ pub(super) fn run(a: &ExplainArgs) -> Status {
         }
         Ok(0)
     })?;
-    if !unsolved {
+    if !unsolved || status == INTERRUPT {
         return Ok(status);
     }
     // What contradicts what, and what is unbounded.

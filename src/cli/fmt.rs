@@ -1,11 +1,11 @@
 //! `bmod fmt`: the layout of texts.
 
-use std::io::{Read, Write};
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use super::args::{EXECUTION, FmtArgs, USAGE};
 use super::commands::{Status, complain};
-use super::host::write_whole;
+use super::host::{Output, say, write_whole};
 use crate::editor;
 
 /// Carries out `bmod fmt`; with `--check` 1 if a file is not laid out as it would be.
@@ -27,12 +27,15 @@ fn one(file: &Path, check: bool) -> Status {
     let new = editor::format(&text, !gams);
     let same = new == text;
     if check && !same {
-        println!("{name}: `bmod fmt` would change it");
+        say!("{name}: `bmod fmt` would change it");
         return Err(USAGE);
     }
     let written = match stdin {
         _ if check => Ok(()),
-        true => std::io::stdout().write_all(new.as_bytes()),
+        true => {
+            Output::Standard.write(&new);
+            Ok(())
+        }
         false if same => Ok(()),
         false => write_whole(file, new.as_bytes()),
     };

@@ -14,11 +14,19 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
+use super::args::INTERRUPT;
 use crate::host::{Found, Host, HostError};
 use crate::system::{self, Files, other, tidy};
 
-/// Set by the first Ctrl-C.
+/// Set by the first Ctrl-C or SIGTERM.
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
+/// Whether the command ends by itself after that.
+pub(super) static ENDS_ITSELF: AtomicBool = AtomicBool::new(false);
+/// Otherwise it is ended after so long.
+pub(super) const GRACE: Duration = Duration::from_millis(1500);
+
+/// Signals that come closer than this are one.
+const SAME_SIGNAL: Duration = Duration::from_millis(200);
 
 /// Where text for people goes.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -33,20 +41,51 @@ pub enum Output {
 }
 
 impl Output {
-    /// Writes; a reader that has gone away (`| head`) is no error of ours.
+    /// Writes; see [`unwritten_output`].
     pub(super) fn write(self, text: &str) {
-        let _ = match self {
+        let written = match self {
             Self::Standard => std::io::stdout().write_all(text.as_bytes()),
             Self::Error => std::io::stderr().write_all(text.as_bytes()),
             Self::Quiet => Ok(()),
         };
+        keep_failure(written);
     }
 }
+
+/// What could not be written to standard output or standard error first, in the system's words.
+static UNWRITTEN: Mutex<Option<String>> = Mutex::new(None);
+
+fn keep_failure(written: std::io::Result<()>) {
+    if let Err(e) = written
+        // A reader that has gone away (`| head`) is no error of ours.
+        && e.kind() != std::io::ErrorKind::BrokenPipe
+    {
+        let mut first = UNWRITTEN.lock().unwrap_or_else(PoisonError::into_inner);
+        first.get_or_insert(e.to_string());
+    }
+}
+
+/// At the end: why some of the output is lost, if it is.
+pub(super) fn unwritten_output() -> Option<String> {
+    keep_failure(std::io::stdout().flush());
+    UNWRITTEN
+        .lock()
+        .unwrap_or_else(PoisonError::into_inner)
+        .take()
+}
+
+/// Writes a line to standard output.
+macro_rules! say {
+    ($($text:tt)*) => {
+        $crate::cli::host::Output::Standard.write(&(format!($($text)*) + "\n"))
+    };
+}
+pub(super) use say;
 
 /// Files of this machine, this terminal, this clock.
 pub struct SystemHost {
     files: Files,
-    out: PathBuf,
+    out: Option<PathBuf>,
     output: Output,
     start: Instant,
     bar: Option<ProgressBar>,
@@ -62,28 +101,58 @@ pub(super) fn styled(bar: ProgressBar, template: &str) -> ProgressBar {
     }
 }
 
-/// Whether Ctrl-C was pressed.
+/// Whether the user (Ctrl-C) or the system (SIGTERM) has asked for the end.
 pub fn interrupted() -> bool {
     INTERRUPTED.load(Ordering::Relaxed)
 }
 
-/// From the first Ctrl-C on [`Host::interrupted`] is true; the second ends the process.
-pub fn watch_ctrl_c() {
-    // A second handler cannot be set; the first one does the same.
-    let _ = ctrlc::set_handler(|| {
-        if INTERRUPTED.swap(true, Ordering::SeqCst) {
-            std::process::exit(130);
+/// From the first Ctrl-C or SIGTERM on [`Host::interrupted`] is true; the second ends the process.
+pub(super) fn watch_signals() {
+    // Without a handler the system's own way of ending a process is left.
+    #[cfg(unix)]
+    {
+        use signal_hook::consts::{SIGINT, SIGTERM};
+        if let Ok(mut signals) = signal_hook::iterator::Signals::new([SIGINT, SIGTERM]) {
+            std::thread::spawn(move || signals.forever().for_each(|_| signalled()));
+        }
+    }
+    #[cfg(windows)]
+    let _ = ctrlc::set_handler(signalled);
+}
+
+fn signalled() {
+    /// When the first signal came.
+    static FIRST: Mutex<Option<Instant>> = Mutex::new(None);
+    let mut first = FIRST.lock().unwrap_or_else(PoisonError::into_inner);
+    match *first {
+        // Schedulers tell a group of processes and each of them: that is one signal.
+        Some(t) if t.elapsed() < SAME_SIGNAL => return,
+        Some(_) => end_interrupted(),
+        None => *first = Some(Instant::now()),
+    }
+    INTERRUPTED.store(true, Ordering::SeqCst);
+    std::thread::spawn(|| {
+        std::thread::sleep(GRACE);
+        if !ENDS_ITSELF.load(Ordering::SeqCst) {
+            end_interrupted();
         }
     });
 }
 
+/// Ends the process, but not while a file is written.
+fn end_interrupted() -> ! {
+    let _writing = WRITING.lock().unwrap_or_else(PoisonError::into_inner);
+    eprintln!("bmod: interrupted");
+    std::process::exit(i32::from(INTERRUPT))
+}
+
 impl SystemHost {
-    /// For a model file, an output folder (made when something is written), and further folders
+    /// For a model file, an output folder (made when something is written; without one nothing is), and further folders
     /// that may be read.
-    pub fn new(model: &Path, out: &Path, allow_read: &[PathBuf], output: Output) -> Self {
+    pub fn new(model: &Path, out: Option<&Path>, allow_read: &[PathBuf], output: Output) -> Self {
         let files = Files::new(model, allow_read);
         Self {
-            out: files.current.join(out),
+            out: out.map(|out| files.current.join(out)),
             files,
             output,
             start: Instant::now(),
@@ -158,9 +227,12 @@ impl Host for SystemHost {
 
     fn write(&mut self, path: &str, bytes: &[u8]) -> Result<PathBuf, HostError> {
         let wanted = tidy(Path::new(path));
+        let Some(out) = &self.out else {
+            return Ok(wanted);
+        };
         let outside = || HostError::Outside(PathBuf::from(path));
-        std::fs::create_dir_all(&self.out).map_err(other)?;
-        let root = self.out.canonicalize().map_err(other)?;
+        std::fs::create_dir_all(out).map_err(other)?;
+        let root = out.canonicalize().map_err(other)?;
         let target = root.join(&wanted);
         let goes_up = |c: Component| matches!(c, Component::ParentDir);
         if wanted.components().any(goes_up) || !target.starts_with(&root) {
@@ -243,7 +315,7 @@ mod tests {
         fs::write(p.join("model/bad.blk"), b"ab\xff").expect("written");
         fs::write(p.join("secret.blk"), "secret").expect("written");
         let model = p.join("model/m.blk");
-        let host = SystemHost::new(&model, &p.join("out"), &[], Output::Quiet).sandbox(true);
+        let host = SystemHost::new(&model, Some(&p.join("out")), &[], Output::Quiet).sandbox(true);
         (root, host)
     }
 
@@ -295,9 +367,9 @@ mod tests {
             ));
         }
         let allow = [root.path().to_path_buf()];
-        let mut open = SystemHost::new(&main, Path::new("."), &[], Output::Quiet);
+        let mut open = SystemHost::new(&main, None, &[], Output::Quiet);
         assert!(open.read("../secret.blk", Some(&known)).is_ok());
-        let mut open = SystemHost::new(&main, Path::new("."), &allow, Output::Quiet).sandbox(true);
+        let mut open = SystemHost::new(&main, None, &allow, Output::Quiet).sandbox(true);
         assert_eq!(
             open.read("../secret.blk", Some(&known)).expect("allowed").1,
             "secret"

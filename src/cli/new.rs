@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::args::{NewArgs, Template, USAGE};
 use super::commands::{Status, complain, unwritten, write_file};
+use super::host::say;
 
 /// The files of a template: names, with NAME for the name that was given, and their texts.
 fn files(template: Template) -> &'static [(&'static str, &'static str)] {
@@ -50,8 +51,8 @@ pub(super) fn new(a: &NewArgs) -> Status {
     for (path, text) in &files {
         std::fs::create_dir_all(folder).map_err(|e| unwritten(path, e))?;
         write_file(path, text.as_bytes())?;
-        println!("written: {}", path.display());
+        say!("written: {}", path.display());
     }
-    println!("try: bmod run {}", files[0].0.display());
+    say!("try: bmod run {}", files[0].0.display());
     Ok(0)
 }

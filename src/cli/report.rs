@@ -1,9 +1,7 @@
 //! `bmod report --html`: formulas, data, solution, ranges, figures and certificate on one page that needs nothing else.
 
 use super::args::{EXECUTION, ReportArgs};
-use super::commands::{
-    Status, Task, carry_out, complain, name, stem, temporary_folder, write_file,
-};
+use super::commands::{Status, Task, carry_out, complain, name, stem, write_file};
 use super::derive::study_options;
 use super::host::Output;
 use crate::check::symbols::{Symbol, SymbolKind};
@@ -15,7 +13,7 @@ use crate::formulation::render::plain;
 use crate::formulation::side::short;
 use crate::formulation::{explain, range, show, study};
 use crate::model::origin::Blocks;
-use crate::report::json::SolveReport;
+use crate::report::json::{RunStatus, SolveReport};
 use crate::run::{Machine, Studied};
 use std::fmt::Write;
 use std::path::Path;
@@ -31,10 +29,12 @@ const v=r=>{const x=r.cells[n].textContent.replace('−','-').replace('∞','Inf
 
 /// Carries out `bmod report`; its exit status.
 pub(super) fn report(a: &ReportArgs) -> Status {
-    let out = temporary_folder()?;
+    // The figures are put on the page.
+    let out = tempfile::tempdir();
+    let out = out.map_err(|_| complain(EXECUTION, "no folder for temporary files"))?;
     let options = study_options(&a.solve, &a.chosen)?;
     let task = Task {
-        out: out.path(),
+        out: Some(out.path()),
         ..Task::new(&a.model, Output::Quiet)
     };
     let mut studied = None;
@@ -45,6 +45,9 @@ pub(super) fn report(a: &ReportArgs) -> Status {
             studied = Some(s.number);
         }
     });
+    if finished.end == RunStatus::Interrupted {
+        return Ok(finished.end.exit());
+    }
     let Some(number) = studied else {
         let status = finished.end.exit().max(EXECUTION);
         let file = name(&a.model);

@@ -3,9 +3,9 @@
 //! Rows go to `rows-*.jsonl` in the folder while they come, each in one write. A run that is there, with the same key, is not
 //! repeated; half a line that a killed process has left is cut off. `results.csv` is written whole at the end, in the order of the grid.
 
-use super::args::{EXECUTION, SweepArgs, USAGE};
+use super::args::{EXECUTION, INTERRUPT, SweepArgs, USAGE};
 use super::commands::{Status, complain, stem};
-use super::host::{interrupted, styled, watch_ctrl_c, write_whole};
+use super::host::{interrupted, say, styled, write_whole};
 use crate::{Control, Error, Model, ModelStatus, Options, Run, SymbolKind};
 use indicatif::ProgressBar;
 use serde_json::{Map, Value, json};
@@ -238,7 +238,6 @@ fn remember(known: &mut HashMap<String, Vec<Row>>, row: Row) {
 }
 
 fn carry_out(a: &SweepArgs, points: &[Point]) -> Result<u8, String> {
-    watch_ctrl_c();
     let mut base = Model::from_file(&a.model.file).map_err(|e| e.to_string())?;
     if a.model.sandbox {
         base.sandbox();
@@ -329,7 +328,12 @@ fn carry_out(a: &SweepArgs, points: &[Point]) -> Result<u8, String> {
         let text = table(&rows, &names, &outputs).map_err(|e| e.to_string())?;
         write_whole(&path, &text).map_err(in_folder)?;
     }
-    Ok(summary(&rows, points.len().div_ceil(parts), folder))
+    let status = summary(&rows, points.len().div_ceil(parts), folder);
+    if interrupted() {
+        let message = "interrupted; runs that are there are not repeated";
+        return Ok(complain(INTERRUPT, message));
+    }
+    Ok(status)
 }
 
 fn locked<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
@@ -393,7 +397,7 @@ fn summary(rows: &[&Row], wanted: usize, folder: &Path) -> u8 {
         *counts.entry(word.replace('_', " ")).or_default() += 1;
     }
     let counts: Vec<String> = counts.iter().map(|(w, n)| format!("{n} {w}")).collect();
-    println!(
+    say!(
         "{} of {wanted} runs: {}; see {}",
         rows.len(),
         counts.join(", "),
@@ -457,7 +461,7 @@ fn slurm(a: &SweepArgs, jobs: usize, points: usize) -> Result<u8, String> {
         p if p.contains(' ') => quoted(p.into_owned()),
         p => p.into_owned(),
     };
-    println!(
+    say!(
         "written: {}; submit it with `sbatch {script}`",
         path.display()
     );

@@ -2,8 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use super::args::{EXECUTION, ModelArgs, TestArgs, USAGE};
+use super::args::{EXECUTION, INTERRUPT, ModelArgs, TestArgs, USAGE};
 use super::commands::{Status, carry_out_silently, complain, options};
+use super::host::say;
 use crate::claims::{broken, claims};
 use crate::run::Options;
 
@@ -43,18 +44,22 @@ pub(super) fn test(a: &TestArgs) -> Status {
                 wrong.push(format!("  line {line}: {what} is {is}, not {value}"));
             }
         })
-        .map_or_else(|status| status, |finished| finished.end.exit());
+        .end
+        .exit();
+        if status == INTERRUPT {
+            return Ok(status);
+        }
         let (word, count) = match status == 0 && wrong.is_empty() {
             true => ("ok    ", &mut passed),
             false => ("FAILED", &mut failed),
         };
         *count += 1;
-        println!("{word}  {}", path.display());
-        wrong.iter().for_each(|w| println!("{w}"));
+        say!("{word}  {}", path.display());
+        wrong.iter().for_each(|w| say!("{w}"));
     }
-    println!("{passed} passed, {failed} failed");
+    say!("{passed} passed, {failed} failed");
     if silent > 0 {
-        println!("{silent} without claims");
+        say!("{silent} without claims");
     }
     Ok(if failed > 0 { EXECUTION } else { 0 })
 }

@@ -2,11 +2,13 @@
 
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Child, Command};
+use std::sync::atomic::Ordering;
 use std::time::{Duration, SystemTime};
 
-use super::args::{EXECUTION, WatchArgs};
+use super::args::{EXECUTION, INTERRUPT, WatchArgs};
 use super::commands::{Status, complain};
+use super::host::{ENDS_ITSELF, interrupted, say};
 
 /// How often the files are looked at.
 const INTERVAL: Duration = Duration::from_millis(200);
@@ -19,8 +21,9 @@ pub(super) fn watch(a: &WatchArgs) -> Status {
         Some(p) if !p.as_os_str().is_empty() => p.to_path_buf(),
         _ => PathBuf::from("."),
     };
+    ENDS_ITSELF.store(true, Ordering::SeqCst);
     let mut seen = None;
-    loop {
+    while !interrupted() {
         let now = stamp(&folder);
         if seen == Some(now) {
             std::thread::sleep(INTERVAL);
@@ -35,13 +38,34 @@ pub(super) fn watch(a: &WatchArgs) -> Status {
         let saved = modified(&a.file);
         let mut run = Command::new(&program);
         run.arg("run").arg(&a.file).args(&a.arguments);
-        run.status()
+        run.spawn()
+            .and_then(wait)
             .map_err(|e| complain(EXECUTION, format!("the run could not be started: {e}")))?;
+        if interrupted() {
+            break;
+        }
         let shown = folder.display();
-        println!("\nwaiting for a change in {shown} (Ctrl-C ends)");
+        say!("\nwaiting for a change in {shown} (Ctrl-C ends)");
         // What the run itself wrote is no change; what was saved meanwhile is.
         seen = (modified(&a.file) == saved).then(|| stamp(&folder));
     }
+    Ok(INTERRUPT)
+}
+
+/// Waits for a run. Ctrl-C reaches it from the terminal; SIGTERM reaches this process alone, and is passed on.
+fn wait(mut run: Child) -> std::io::Result<()> {
+    let mut told = false;
+    while run.try_wait()?.is_none() {
+        if interrupted() && !told {
+            told = true;
+            #[cfg(unix)]
+            Command::new("kill")
+                .args(["-TERM", &run.id().to_string()])
+                .status()?;
+        }
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    Ok(())
 }
 
 fn modified(file: &Path) -> Option<SystemTime> {

@@ -8,16 +8,13 @@ use std::path::PathBuf;
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use super::args::EXECUTION;
-use super::host::{Output, WRITING};
+use super::host::{GRACE, Output, WRITING, interrupted};
 use crate::report::diagnostic::{Diagnostic, Severity};
 use crate::report::json::{RunStatus, SharedReport, SolveReport};
 use crate::report::summary;
 use crate::solve::{ModelStatus, SolverStatus};
 use crate::system;
 
-/// Seconds past the deadline at which a run is ended: it is gone within two.
-const GRACE: f64 = 1.5;
 /// The same for memory: times the limit that ends a run at once, and seconds beyond the limit that do.
 const MEMORY_GRACE: (f64, f64) = (1.1, 1.0);
 /// Between two looks at the memory. A process takes up about 20 MB in this time.
@@ -43,11 +40,8 @@ pub(super) struct Watch {
 pub(super) struct Watchdog(Arc<(Mutex<bool>, Condvar)>);
 
 impl Watchdog {
-    /// None where there is no limit.
+    /// None where there are no threads.
     pub(super) fn new(watch: Watch) -> Option<Self> {
-        if watch.time_limit.is_infinite() && watch.max_memory.is_none() {
-            return None;
-        }
         let state = Arc::new((Mutex::new(false), Condvar::new()));
         let seen = Arc::clone(&state);
         let thread = std::thread::Builder::new().name("watchdog".into());
@@ -67,17 +61,12 @@ impl Watch {
     /// Returns when the run is over, or ends the process.
     fn until_over(&self, (over, changed): &(Mutex<bool>, Condvar)) {
         let start = Instant::now();
-        let deadline = self.time_limit + GRACE;
-        let mut above_since = None;
+        let deadline = self.time_limit + GRACE.as_secs_f64();
+        let (mut above_since, mut interrupted_since) = (None, None);
         let mut is_over = over.lock().unwrap_or_else(PoisonError::into_inner);
         while !*is_over {
-            let left = (deadline - start.elapsed().as_secs_f64()).clamp(0.0, 3600.0);
-            let pause = match self.max_memory {
-                Some(_) => LOOK.min(Duration::from_secs_f64(left)),
-                None => Duration::from_secs_f64(left),
-            };
             is_over = changed
-                .wait_timeout(is_over, pause)
+                .wait_timeout(is_over, LOOK)
                 .unwrap_or_else(PoisonError::into_inner)
                 .0;
             // The lock is held from here on: a run that is over now waits, and the report is written once.
@@ -87,8 +76,14 @@ impl Watch {
             if start.elapsed().as_secs_f64() >= deadline {
                 self.end(
                     "E0490",
+                    RunStatus::ExecutionError,
                     &format!("the time limit of {} s is used up", self.time_limit),
                 );
+            }
+            if interrupted()
+                && interrupted_since.get_or_insert_with(Instant::now).elapsed() >= GRACE
+            {
+                self.end("E0492", RunStatus::Interrupted, "the run was interrupted");
             }
             if let Some(limit) = self.max_memory {
                 let held = system::memory();
@@ -102,6 +97,7 @@ impl Watch {
                     let limit = limit >> 20;
                     self.end(
                         "E0491",
+                        RunStatus::ExecutionError,
                         &format!("the memory limit of {limit} MB is used up"),
                     );
                 }
@@ -110,13 +106,16 @@ impl Watch {
     }
 
     /// Writes what is known and ends the process.
-    fn end(&self, code: &'static str, message: &str) -> ! {
+    fn end(&self, code: &'static str, status: RunStatus, message: &str) -> ! {
         let mut known = std::mem::take(&mut *self.report.get());
         let left_out = known.shorten();
         let solving = known.solving.take().map(|s| SolveReport {
             model_status: ModelStatus::NoSolution.into(),
-            solver_status: SolverStatus::ResourceInterrupt.into(),
-            message: Some("ended by the limit; its point is not known".into()),
+            solver_status: match status {
+                RunStatus::Interrupted => SolverStatus::UserInterrupt.into(),
+                _ => SolverStatus::ResourceInterrupt.into(),
+            },
+            message: Some("ended from outside; its point is not known".into()),
             ..s
         });
         let doing = match &solving {
@@ -137,7 +136,7 @@ impl Watch {
             self.output.write(&summary::solve(solve, false));
         }
         let mut report = known.of(&self.file);
-        report.status = RunStatus::ExecutionError;
+        report.status = status;
         report.solves.extend(solving);
         report.diagnostics.push(diagnostic);
         if let Some(path) = &self.json {
@@ -145,6 +144,6 @@ impl Watch {
         }
         // No file is half written: whoever writes one holds this.
         let _writing = WRITING.lock().unwrap_or_else(PoisonError::into_inner);
-        std::process::exit(i32::from(EXECUTION))
+        std::process::exit(i32::from(status.exit()))
     }
 }

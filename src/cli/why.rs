@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use super::args::WhyArgs;
-use super::commands::{Status, carry_out_silently, name, options, write_report};
+use super::commands::{Status, Task, carry_out, name, options, write_report};
+use super::host::Output;
 use crate::report::summary;
 use crate::run::Options;
 use crate::session;
@@ -17,10 +18,14 @@ pub(super) fn why(a: &WhyArgs) -> Status {
         ..options(&a.solve)?
     };
     // The model's own output and files are not wanted here.
-    let finished = carry_out_silently(&a.model, options, &mut |_| {})?;
+    let task = Task {
+        json: a.json.as_deref(),
+        ..Task::new(&a.model, Output::Quiet)
+    };
+    let finished = carry_out(task, options, &mut |_| {});
     let status = finished.end.exit();
     if a.json.as_deref() != Some(Path::new("-")) {
-        print!("{}", text(&finished));
+        Output::Standard.write(&text(&finished));
     }
     Ok(match &a.json {
         Some(path) => status.max(write_report(finished, &name(&a.model), path)),

@@ -40,7 +40,7 @@ const SECTIONS: &[(&str, &str)] = &[
     ("E0333", "Declarations and data"),
     ("E0350", "Models and solves"),
     ("E0370", "Figures and other output"),
-    ("E0401", "Arithmetic"),
+    ("E0400", "Arithmetic"),
     ("E0410", "Generation and solution"),
     ("E0470", "Files that a run reads and writes"),
     ("E0480", "Aborts, figures and limits"),
@@ -65,6 +65,7 @@ pub const CODES: &[Code] = &[
     row("E0114", Error, "condition of `$if`", "the condition cannot be read"),
     row("E0115", Error, "expression of `$eval`", "the expression cannot be evaluated"),
     row("E0116", Error, "`$goto`", "its `$label` is missing, or it does not end"),
+    row("E0117", Warning, "`-D` without effect", "nothing in the text reads `%name%`"),
 
     row("E0201", Error, "missing semicolon", "`;` is missing before the next statement"),
     row("E0202", Error, "open parenthesis", "a parenthesis or a block is never closed"),
@@ -196,7 +197,9 @@ pub const CODES: &[Code] = &[
     row("E0377", Error, "data of another shape", "data from outside have as many labels as the symbol has indices"),
     row("E0378", Warning, "membership assigned", "`p(t) = t` gives 1 for every element; `ord(t)` is its position, `t.val` its number"),
     row("E0379", Warning, "condition without parentheses", "`a $ b > c` compares `a $ b` with `c`; write `a $ (b > c)`"),
+    row("E0380", Warning, "alias of nothing", "`alias(i, j)` makes `j` another name of the set `i`"),
 
+    row("E0400", Execution, "not a count", "a position, width or count is a finite number"),
     row("E0401", Execution, "division by zero", "guard it with a condition"),
     row("E0402", Execution, "infinity times zero", "guard the product with a condition"),
     row("E0403", Execution, "function without a value", "the argument lies outside the function's domain, such as `log(0)`"),
@@ -225,12 +228,14 @@ pub const CODES: &[Code] = &[
     row("E0432", Execution, "no optimality conditions", "no objective, kinks, or a function whose derivative the language lacks"),
     row("E0433", Execution, "no ranges", "they belong to a linear program that was solved to an optimum"),
 
+    row("E0434", Warning, "a listing needs a solve", "`bmod list` solves nothing: what depends on levels, marginals or statuses may be another model in a run"),
     row("E0470", Execution, "file not written", "the folder or the disk does not allow it"),
     row("E0471", Execution, "file not read", "the file cannot be opened"),
     row("E0472", Execution, "no open file", "`put` needs a file: `put f;`"),
     row("E0473", Warning, "text does not fit", "a number, line or page of a `put` file is too small"),
     row("E0474", Warning, "`put_utility`", "this command is not carried out"),
     row("E0475", Execution, "nothing to exchange", "a symbol with data, and a file, must be named"),
+    row("E0476", Warning, "file kept from the disk", "`$echo` or `$gdxOut` names a file outside the output folder"),
     row("E0477", Execution, "symbol not in the file", "the message names the nearest"),
     row("E0478", Execution, "data file", "its content cannot be loaded; nothing was changed"),
     row("E0479", Execution, "label of a data file", "it is not in the domain"),
@@ -240,8 +245,10 @@ pub const CODES: &[Code] = &[
     row("E0482", Warning, "value not drawn", "a value of a figure is not a finite number"),
     row("E0483", Execution, "argument of a figure", "its value cannot be used"),
     row("E0484", Warning, "empty figure", "a figure with nothing to draw is an empty page; a condition may leave nothing"),
+    row("E0485", Execution, "`execError` assigned", "a run with more errors than `maxExecError` fails"),
     row("E0490", Execution, "time limit", "raise it with `--time-limit`"),
     row("E0491", Execution, "memory limit", "raise it with `--max-memory`, or keep the sets sparse"),
+    row("E0492", Execution, "interrupted", "the run was stopped by Ctrl-C, or by the system; run it again"),
     row("E0499", Execution, "defect of bmod", "something went wrong inside of bmod; please report it with the model"),
 ];
 

@@ -47,6 +47,9 @@ pub struct Report {
     pub displays: Vec<Display>,
     /// Files written: figures, put files, data.
     pub files: Vec<String>,
+    /// Those among them that were still being written when the run was stopped.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub partial: Vec<String>,
     /// What was wrong.
     pub diagnostics: Vec<Diagnostic>,
     /// The solve that runs just now. Not in the JSON.
@@ -78,6 +81,8 @@ pub enum RunStatus {
     ExecutionError,
     /// Exit status 3: an `abort` statement.
     Aborted,
+    /// Exit status 130: Ctrl-C, or the system asked for the end (SIGTERM).
+    Interrupted,
 }
 
 impl RunStatus {
@@ -87,6 +92,7 @@ impl RunStatus {
             Self::Ok => 0,
             Self::CompilationError => 2,
             Self::ExecutionError | Self::Aborted => 3,
+            Self::Interrupted => 130,
         }
     }
 }

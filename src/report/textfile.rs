@@ -11,11 +11,11 @@ use rustc_hash::FxHashMap;
 pub const PAGE_NUMBER: char = '\u{1}';
 
 /// Widths, decimals and attributes beyond are cut to it.
-pub const WIDEST: f64 = 32_767.0;
+pub const WIDEST: usize = 32_767;
 
 /// Attributes and their values before anything is assigned.
 const DEFAULTS: &[(&str, f64)] = &[
-    ("pw", WIDEST),
+    ("pw", WIDEST as f64),
     ("ps", 58.0),
     ("pc", 2.0),
     ("nd", 2.0),
@@ -56,9 +56,9 @@ pub struct Format {
     /// `<` left, `>` right, `=` centred.
     pub align: Option<char>,
     /// Width; 0: what the item needs.
-    pub width: Option<i64>,
+    pub width: Option<usize>,
     /// Decimals.
-    pub decimals: Option<i64>,
+    pub decimals: Option<usize>,
 }
 
 /// Parts of a page.
@@ -204,7 +204,12 @@ impl TextFile {
     }
 
     fn integer(&self, name: &str) -> i64 {
-        self.get(name).clamp(-1.0, WIDEST) as i64
+        self.get(name).clamp(-1.0, WIDEST as f64) as i64
+    }
+
+    /// A width or a number of lines.
+    fn natural(&self, name: &str) -> usize {
+        self.integer(name).max(0) as usize
     }
 
     fn block(&mut self, part: Part) -> &mut Block {
@@ -221,9 +226,7 @@ impl TextFile {
             Some(lines) => lines.len(),
             None => self.title.lines.len() + self.header.lines.len(),
         };
-        (self.integer("ps").max(1) as usize)
-            .saturating_sub(above)
-            .max(1)
+        self.natural("ps").saturating_sub(above).max(1)
     }
 
     /// Whether anything was written.
@@ -259,31 +262,26 @@ impl TextFile {
     }
 
     /// `@n`, from 1. Ignored where items are separated by quotes and delimiters.
-    pub fn column(&mut self, part: Part, n: f64) {
+    pub fn column(&mut self, part: Part, n: usize) {
         if !matches!(self.integer("pc"), 4..=6) {
             let b = self.block(part);
-            b.column = n.round().clamp(1.0, 32767.0) as usize - 1;
+            b.column = n.saturating_sub(1);
             b.full = false;
         }
     }
 
     /// `#n`, from 1.
-    pub fn row(&mut self, part: Part, n: f64) -> Result<(), Overflow> {
+    pub fn row(&mut self, part: Part, n: usize) -> Result<(), Overflow> {
         self.begin(part);
         let most = if part == Part::Body {
             self.capacity()
         } else {
-            self.integer("ps").max(1) as usize
+            self.natural("ps").max(1)
         };
-        let row = n.round().clamp(1.0, 1e6) as usize;
         let b = self.block(part);
-        b.row = row.min(most) - 1;
+        b.row = n.clamp(1, most) - 1;
         b.full = false;
-        if row > most {
-            Err(Overflow::Row)
-        } else {
-            Ok(())
-        }
+        if n > most { Err(Overflow::Row) } else { Ok(()) }
     }
 
     /// Writes an item.
@@ -307,13 +305,13 @@ impl TextFile {
             Item::Number(x) => {
                 let width = match format.width {
                     _ if pc == 8 => 0,
-                    Some(w) => w.max(0) as usize,
-                    None => self.integer("nw").max(0) as usize,
+                    Some(w) => w,
+                    None => self.natural("nw"),
                 };
                 let decimals = format
                     .decimals
-                    .unwrap_or_else(|| self.integer("nd"))
-                    .clamp(0, 99) as usize;
+                    .unwrap_or_else(|| self.natural("nd"))
+                    .min(99);
                 let x = if x.abs() < self.get("nz") { 0.0 } else { *x };
                 let t = number(x, width, decimals, Form::new(self.get("nr")));
                 if t.starts_with('*') {
@@ -358,9 +356,9 @@ impl TextFile {
             let place = self.get("nr") == 2.0 && !number.starts_with(['-', '*']);
             text = format!("{}{number}", if place { " " } else { "" });
         }
-        let width = format.width.unwrap_or_else(|| self.integer("nw"));
-        if matches!(item, Item::Special(_)) && pc != 8 && width > 0 && text.len() > width as usize {
-            text = "*".repeat(width as usize);
+        let width = format.width.unwrap_or_else(|| self.natural("nw"));
+        if matches!(item, Item::Special(_)) && pc != 8 && width > 0 && text.len() > width {
+            text = "*".repeat(width);
         }
         if quoted {
             text = text.replace('"', "\"\"");
@@ -374,8 +372,8 @@ impl TextFile {
             _ => " ",
         };
         if self.block(part).column > 0 {
-            let wraps = pc == 8
-                && self.block(part).column + 1 + text.chars().count() > self.integer("pw") as usize;
+            let wraps =
+                pc == 8 && self.block(part).column + 1 + text.chars().count() > self.natural("pw");
             if wraps {
                 self.new_line(part);
                 self.begin(part);
@@ -394,7 +392,7 @@ impl TextFile {
             Item::Member(_) => ("sw", "sj"),
             Item::Text(_) | Item::Page => ("tw", "tj"),
         };
-        let width = format.width.unwrap_or_else(|| self.integer(width)).max(0) as usize;
+        let width = format.width.unwrap_or_else(|| self.natural(width));
         let align = match format.align {
             Some('<') => 2,
             Some('>') => 1,
@@ -412,7 +410,7 @@ impl TextFile {
     }
 
     fn write(&mut self, part: Part, text: &str) -> Result<(), Overflow> {
-        let page_width = self.integer("pw").max(4) as usize;
+        let page_width = self.natural("pw").max(4);
         let b = self.block(part);
         if b.full {
             return Ok(());
@@ -450,9 +448,9 @@ impl TextFile {
             return;
         };
         let body = std::mem::take(&mut self.body);
-        let (pc, width) = (self.integer("pc"), self.integer("pw").max(0) as usize);
-        let top = self.integer("tm").max(0) as usize;
-        let margin = self.integer("lm").max(0) as usize;
+        let (pc, width) = (self.integer("pc"), self.natural("pw"));
+        let top = self.natural("tm");
+        let margin = self.natural("lm");
         let mut lines = 0;
         let mut emit = |out: &mut String, line: &str| {
             match (pc, lines) {

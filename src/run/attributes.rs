@@ -6,8 +6,9 @@
 use super::Machine;
 use crate::check::node::SymbolId;
 use crate::check::symbols::SymbolKind;
-use crate::data::value::{NA, number};
+use crate::data::value::NA;
 use crate::solve::{ModelStatus, SolverStatus};
+use crate::source::Span;
 
 impl Machine<'_> {
     /// The value of an attribute (its name in lower case).
@@ -32,15 +33,16 @@ impl Machine<'_> {
         a: &'static str,
         value: f64,
         text: Option<String>,
+        span: Span,
     ) {
         if text.is_some() {
             return;
         }
         match self.symbols.get(s).kind {
             SymbolKind::File(_) => {
-                let file = self.put.files.entry(s).or_default();
-                if value.is_finite() || number(value) == 0.0 {
-                    file.text.set(a, number(value));
+                let name = format!("`{}.{a}`", self.symbols.get(s).name);
+                if let Some(x) = self.finite(value, &name, span) {
+                    self.put.files.entry(s).or_default().text.set(a, x);
                 }
             }
             _ => {

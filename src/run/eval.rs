@@ -297,8 +297,12 @@ impl Machine<'_> {
                 match at {
                     None => text.chars().count() as f64,
                     Some(n) => {
-                        let n = number(self.eval(n, frame)).max(1.0) as usize;
-                        text.chars().nth(n - 1).map_or(0.0, |c| f64::from(c as u32))
+                        let position = self.eval(n, frame);
+                        let most = text.chars().count() + 1;
+                        match self.whole(position, "the position in a text", [1, most], n.span) {
+                            Some(n) => text.chars().nth(n - 1).map_or(0.0, |c| f64::from(c as u32)),
+                            None => UNDF,
+                        }
                     }
                 }
             }

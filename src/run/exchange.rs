@@ -124,7 +124,7 @@ impl Machine<'_> {
         for (name, bytes) in files {
             let written = self.write_file(&name, &bytes, span);
             // It may be loaded again.
-            self.map.remember(&name, bytes);
+            self.map.remember(&name, bytes, span);
             if !written {
                 return;
             }

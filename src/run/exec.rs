@@ -35,6 +35,9 @@ fn skips(a: &Assignment, value: f64) -> bool {
     a.nonzero && !truth(value)
 }
 
+/// What `execError` and `maxExecError` count to.
+const MOST_ERRORS: usize = 1_000_000_000;
+
 impl Machine<'_> {
     pub(super) fn block(&mut self, code: &[Code], frame: &mut Frame) -> Flow {
         for c in code {
@@ -58,8 +61,14 @@ impl Machine<'_> {
 
     fn statement(&mut self, c: &Code, frame: &mut Frame) -> Flow {
         self.options.at.set(c.span);
+        if self.interrupted() {
+            return Flow::Stop;
+        }
         self.take_collected();
         self.tidy(c);
+        if self.options.list.is_some() {
+            self.follow_unsolved(c);
+        }
         match &c.kind {
             CodeKind::Assign(a) => match a.in_turn {
                 true => self.assign_in_turn(a, frame),
@@ -67,22 +76,32 @@ impl Machine<'_> {
             },
             CodeKind::Loop(d, anew, body) => return self.run_loop(d, anew, body, frame),
             CodeKind::While(cond, body) => {
-                while truth(self.eval(cond, frame)) {
+                let outer = self.take_undecided();
+                while !self.waits(cond) && truth(self.eval(cond, frame)) {
                     if let ControlFlow::Break(flow) = self.turn(body, frame) {
                         return flow;
                     }
                     self.tidy(c);
+                    if self.take_undecided() {
+                        break;
+                    }
                 }
+                self.leave_undecided(outer);
             }
-            CodeKind::Repeat(body, until) => loop {
-                if let ControlFlow::Break(flow) = self.turn(body, frame) {
-                    return flow;
+            CodeKind::Repeat(body, until) => {
+                let outer = self.take_undecided();
+                loop {
+                    if let ControlFlow::Break(flow) = self.turn(body, frame) {
+                        return flow;
+                    }
+                    self.tidy(c);
+                    if self.take_undecided() || self.waits(until) || truth(self.eval(until, frame))
+                    {
+                        break;
+                    }
                 }
-                self.tidy(c);
-                if truth(self.eval(until, frame)) {
-                    break;
-                }
-            },
+                self.leave_undecided(outer);
+            }
             CodeKind::For(f) => return self.run_for(c.span, f, frame),
             CodeKind::If(arms, otherwise) => {
                 for (cond, body) in arms {
@@ -194,10 +213,15 @@ impl Machine<'_> {
 
     fn run_for(&mut self, span: Span, f: &For<TableId, Node, Code>, frame: &mut Frame) -> Flow {
         let (table, down) = (f.variable, f.down);
-        let [from, to] = [&f.from, &f.to].map(|n| number(self.eval(n, frame)));
-        let by = f.by.as_ref();
-        let by = by.map_or(1.0, |b| number(self.eval(b, frame)));
-        let sane = by > 0.0 && !from.is_nan() && !to.is_nan();
+        let mut value = |n: &Node| {
+            let x = number(self.eval(n, frame));
+            if x.is_nan() {
+                self.finite(x, "a number of `for`", n.span);
+            }
+            x
+        };
+        let (from, to) = (value(&f.from), value(&f.to));
+        let by = f.by.as_ref().map_or(1.0, value);
         let mistake = |m: &Self| {
             m.execution_error(
                 "E0406",
@@ -207,7 +231,6 @@ impl Machine<'_> {
             );
         };
         if from.is_nan() || to.is_nan() || by.is_nan() {
-            mistake(self);
             return Flow::Next;
         }
         // The current value of the scalar counts, so that the body may change it.
@@ -222,7 +245,7 @@ impl Machine<'_> {
                 return flow;
             }
             // As in GAMS the step is looked at when it is taken.
-            if !sane {
+            if by <= 0.0 {
                 mistake(self);
                 return Flow::Next;
             }
@@ -265,12 +288,25 @@ impl Machine<'_> {
             if skips(a, v) {
                 return;
             }
-            let count = number(v).clamp(0.0, 1e9) as usize;
+            let count = |what| self.whole(v, what, [0, MOST_ERRORS], value.span);
             match target {
-                Target::Errors => self.failed_statements.set(count),
-                Target::MostErrors => self.most_errors = count,
-                Target::Seed => *self.random.borrow_mut() = Random::new(number(v) as i64),
-                Target::Object(s, a) => self.set_object_attribute(s, a, v, text),
+                Target::Errors => {
+                    if let Some(n) = count("`execError`") {
+                        self.failed_statements.set(n);
+                        self.errors_assigned.set(Some(value.span));
+                    }
+                }
+                Target::MostErrors => {
+                    if let Some(n) = count("`maxExecError`") {
+                        self.most_errors = n;
+                    }
+                }
+                Target::Seed => {
+                    if let Some(seed) = self.finite(v, "`execSeed`", value.span) {
+                        *self.random.borrow_mut() = Random::new(seed as i64);
+                    }
+                }
+                Target::Object(s, a) => self.set_object_attribute(s, a, v, text, value.span),
                 _ => {}
             }
             return;

@@ -16,8 +16,15 @@ impl Machine<'_> {
         match written {
             Ok(path) => {
                 let path = path.display().to_string();
-                if !self.report().files.contains(&path) {
-                    self.report().files.push(path);
+                let stopped = self.stopped();
+                let mut report = self.report();
+                // A file that is written after the end holds what was there then.
+                report.partial.retain(|p| *p != path);
+                if stopped {
+                    report.partial.push(path.clone());
+                }
+                if !report.files.contains(&path) {
+                    report.files.push(path);
                 }
                 true
             }
@@ -28,14 +35,19 @@ impl Machine<'_> {
         }
     }
 
-    /// Writes what `$echo` and `$unload` said while the text was read. A name outside the output folder is passed over: the
+    /// Writes what `$echo` and `$unload` said while the text was read. A name outside the output folder is warned of: the
     /// run itself finds the text without it.
     pub(super) fn write_early_files(&mut self) {
         let files: Vec<_> = self.map.written.values().cloned().collect();
-        for (name, bytes) in files.iter().filter(|f| !f.0.is_empty()) {
-            let written = self.host().write(name, bytes);
-            if let Ok(path) = written {
-                self.report().files.push(path.display().to_string());
+        for f in files.iter().filter(|f| !f.name.is_empty()) {
+            let written = self.host().write(&f.name, &f.bytes);
+            match written {
+                Ok(path) => self.report().files.push(path.display().to_string()),
+                Err(HostError::Outside(_)) => Diagnostic::warning("E0476", f.span)
+                    .says(format!("the file `{}` lies outside the output folder: it is not written, but the model itself may read it", f.name))
+                    .help("give a name without `..`, and the folder with `--out`")
+                    .note(self),
+                Err(e) => refused("E0470", "written", &f.name, &e, f.span).note(self),
             }
         }
     }

@@ -97,7 +97,7 @@ impl Machine<'_> {
         };
         let state = self.models.entry(s.model).or_default();
         state.attributes.insert("handle", handle);
-        match self.host().interrupted() {
+        match self.interrupted() {
             true => Flow::Stop,
             false => Flow::Next,
         }

@@ -10,6 +10,7 @@ pub mod random;
 
 mod attributes;
 mod constant;
+mod count;
 mod draw;
 mod eval;
 mod examine;
@@ -18,6 +19,7 @@ mod exec;
 mod files;
 mod generate;
 mod grid;
+mod listing;
 mod option_file;
 mod options;
 mod put;
@@ -99,6 +101,8 @@ pub struct Machine<'h> {
     pub put: options::PutState,
     /// Files that data go to and come from.
     transfer: exchange::ExchangeState,
+    /// What `bmod list` leaves out.
+    unsolved: listing::Unsolved,
     host: RefCell<&'h mut dyn Host>,
     random: RefCell<Random>,
     diagnostics: RefCell<Vec<Diagnostic>>,
@@ -106,6 +110,8 @@ pub struct Machine<'h> {
     errors: Cell<usize>,
     /// Statements that had some, as `execError` counts them.
     failed_statements: Cell<usize>,
+    /// What assigned that number last.
+    errors_assigned: Cell<Option<Span>>,
     /// So many of them the run may have and go on: `maxExecError`.
     most_errors: usize,
     /// What is assigned just now, for messages.
@@ -114,6 +120,7 @@ pub struct Machine<'h> {
     /// What takes its time now, for who waits.
     pub(crate) doing: RefCell<String>,
     stop: Cell<bool>,
+    interrupted: Cell<bool>,
     /// Bytes that the run may take: what was asked for, or what the machine has.
     memory: Option<usize>,
     /// The text itself shows numbers.
@@ -179,16 +186,19 @@ impl<'h> Machine<'h> {
             solves_seen: 0,
             put: options::PutState::default(),
             transfer: exchange::ExchangeState::default(),
+            unsolved: listing::Unsolved::default(),
             host: RefCell::new(host),
             random: RefCell::new(random),
             diagnostics: RefCell::new(Vec::new()),
             errors: Cell::new(0),
             failed_statements: Cell::new(0),
+            errors_assigned: Cell::new(None),
             most_errors: 0,
             current: RefCell::new(None),
             ticks: Cell::new(0),
             doing: RefCell::new(STATEMENTS.into()),
             stop: Cell::new(false),
+            interrupted: Cell::new(false),
             shows_numbers: program.shows_numbers,
             loops: 0,
             started,
@@ -203,7 +213,9 @@ impl<'h> Machine<'h> {
         let mut frame = vec![0; self.slots];
         self.write_early_files();
         let flow = self.block(code, &mut frame);
+        self.interrupted();
         self.close_put_files();
+        self.explain_assigned_errors();
         flow
     }
 
@@ -233,7 +245,7 @@ impl<'h> Machine<'h> {
                 self.failed_statements.set(failed + 1);
             }
         }
-        if list.len() < MAX_KEPT_ERRORS && !again {
+        if (list.len() < MAX_KEPT_ERRORS || self.stop.get()) && !again {
             list.push(d);
         }
     }
@@ -267,6 +279,24 @@ impl<'h> Machine<'h> {
         self.statements_failed() > self.most_errors
     }
 
+    /// A run that fails by what was assigned to `execError` alone says so.
+    pub(crate) fn explain_assigned_errors(&self) {
+        let list = self.diagnostics.borrow();
+        let explained = list.iter().any(|d| d.severity == Severity::Execution);
+        drop(list);
+        let assigned = self.errors_assigned.take();
+        if let (true, false, Some(span)) = (self.failed(), explained, assigned) {
+            let (errors, most) = (self.statements_failed(), self.most_errors);
+            Diagnostic::execution("E0485", span)
+                .says(format!(
+                    "`execError` is {errors}, and `maxExecError` {most}: the run fails"
+                ))
+                .label("assigned here")
+                .help("leave the assignment out, or write `execError = 0;` behind it")
+                .note(self);
+        }
+    }
+
     /// The symbol of a table.
     pub fn table_owner(&self, t: TableId) -> Option<SymbolId> {
         self.table_symbol(t)
@@ -295,14 +325,10 @@ impl<'h> Machine<'h> {
 
     #[cold]
     fn check_limits(&self) -> bool {
-        if self.stop.get() {
+        if self.stop.get() || self.interrupted() {
             return false;
         }
         let host = self.host.borrow();
-        if host.interrupted() {
-            self.stop.set(true);
-            return false;
-        }
         if host.elapsed() > self.options.time_limit {
             self.stop.set(true);
             drop(host);
@@ -331,6 +357,20 @@ impl<'h> Machine<'h> {
         drop(host);
         self.host().progress(&self.doing.borrow());
         true
+    }
+
+    /// Whether the user has stopped the run: it ends here, and says so.
+    pub(crate) fn interrupted(&self) -> bool {
+        if !self.stop.get() && self.host.borrow().interrupted() {
+            self.stop.set(true);
+            self.interrupted.set(true);
+            Diagnostic::execution("E0492", self.options.at.get())
+                .says("the run was interrupted")
+                .label("stopped here")
+                .help("what was computed before is kept; nothing behind this place was carried out")
+                .note(self);
+        }
+        self.interrupted.get()
     }
 
     /// Whether the run was stopped by a limit or by the user.

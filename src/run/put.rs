@@ -9,7 +9,7 @@ use crate::check::calendar;
 use crate::check::figure::is_text;
 use crate::check::node::{DataFunction, Node, NodeKind, PutCode, SymbolId, Written};
 use crate::check::symbols::SymbolKind;
-use crate::data::value::{is_eps, number, special_text, truth};
+use crate::data::value::{is_eps, special_text, truth};
 use crate::diag::Diagnostic;
 use crate::report::textfile::{Format, Item, Overflow, Part, WIDEST};
 use crate::source::Span;
@@ -17,6 +17,9 @@ use crate::source::Span;
 const MONTHS: [&str; 12] = [
     "Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec",
 ];
+
+/// Rows that are told from one another: all lie below a page.
+const MOST_ROWS: usize = 1_000_000;
 
 impl Machine<'_> {
     /// A statement.
@@ -67,16 +70,21 @@ impl Machine<'_> {
                     f.text.new_line(part);
                 }
                 PutCode::Column(n) => {
-                    let n = number(self.eval(n, frame));
+                    let column = self.eval(n, frame);
+                    let column = self.whole(column, "the column behind `@`", [1, WIDEST], n.span);
                     let Some(f) = self.put_file(span) else { return };
-                    f.text.column(part, n);
+                    if let Some(n) = column {
+                        f.text.column(part, n);
+                    }
                 }
                 PutCode::Row(n) => {
-                    let row = number(self.eval(n, frame));
-                    let place = n.span;
+                    let row = self.eval(n, frame);
+                    let row = self.whole(row, "the row behind `#`", [1, MOST_ROWS], n.span);
                     let Some(f) = self.put_file(span) else { return };
-                    let r = f.text.row(part, row);
-                    self.put_trouble(r, place);
+                    if let Some(row) = row {
+                        let r = f.text.row(part, row);
+                        self.put_trouble(r, n.span);
+                    }
                 }
                 PutCode::Item(w) => {
                     let Some((item, format)) = self.put_formatted(w, frame) else {
@@ -96,10 +104,13 @@ impl Machine<'_> {
         w: &Written<Node>,
         frame: &mut Frame,
     ) -> Option<(Item, Format)> {
-        let [width, decimals] = [&w.width, &w.decimals].map(|n| {
-            let x = number(self.eval(n.as_ref()?, frame));
-            Some(x.round().clamp(0.0, WIDEST) as i64)
-        });
+        let mut given = |n: &Option<Node>, what: &str| {
+            let n = n.as_ref()?;
+            let x = self.eval(n, frame);
+            self.whole(x, what, [0, WIDEST], n.span)
+        };
+        let width = given(&w.width, "the width of an item");
+        let decimals = given(&w.decimals, "the number of decimals");
         let format = Format {
             align: w.align,
             width,
@@ -179,7 +190,7 @@ impl Machine<'_> {
             return;
         }
         self.write_file(&name, text.as_bytes(), span);
-        self.map.remember(&name, text.into_bytes());
+        self.map.remember(&name, text.into_bytes(), span);
     }
 
     /// Writes what is still open, in the order of declaration.

@@ -200,9 +200,13 @@ pub(super) fn valid(f: DataFunction, a: &[f64]) -> Result<(), &'static str> {
         (D::Normal, [_, deviation]) if *deviation < 0.0 => {
             Err("the standard deviation must not be negative")
         }
-        (D::RandBinomial, [n, p]) if !(whole(*n) && *n >= 1.0 && (0.0..=1.0).contains(p)) => Err(
-            "the number of trials must be a positive whole number, the probability between 0 and 1",
-        ),
+        (D::RandBinomial, [n, p])
+            if !(whole(*n) && (1.0..1e9).contains(n) && (0.0..=1.0).contains(p)) =>
+        {
+            Err(
+                "the number of trials must be a whole number between 1 and 1e9, the probability between 0 and 1",
+            )
+        }
         (D::RandTriangle, [low, mid, high]) if !(low <= mid && mid <= high) => {
             Err("the mode must be between the ends of the interval")
         }

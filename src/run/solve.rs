@@ -86,9 +86,10 @@ impl<'h> Machine<'h> {
 
     /// A model option: the model's own attribute, the `option` statement, or the default.
     pub(super) fn model_option(&self, model: SymbolId, name: &'static str, default: f64) -> f64 {
-        self.models
-            .get(&model)
-            .and_then(|m| m.get(name))
+        // What is `na` was not said: so reads what was never assigned.
+        let own = self.models.get(&model).and_then(|m| m.get(name));
+        own.map(number)
+            .filter(|x| !x.is_nan())
             .or_else(|| self.options.number(name))
             .unwrap_or(default)
     }
@@ -164,6 +165,7 @@ impl<'h> Machine<'h> {
         if let Some(list) = self.options.list.clone() {
             self.print_listing(&name, &generated, &list);
             self.report().solves.push(self.not_solved(s, &generated));
+            self.leave_unsolved(s.model, &generated, span);
             return Flow::Next;
         }
         let choice = self.options.texts.get(s.using.name()).cloned();
@@ -242,7 +244,7 @@ impl<'h> Machine<'h> {
                 answer: a,
             });
         }
-        match self.host().interrupted() {
+        match self.interrupted() {
             true => Flow::Stop,
             false => Flow::Next,
         }
@@ -298,6 +300,7 @@ impl<'h> Machine<'h> {
     /// After an error the run ends here; errors that `maxExecError` lets pass skip the solve.
     fn unsolved(&mut self, s: &SolveCode, span: Span) -> Flow {
         if self.failed() {
+            self.explain_assigned_errors();
             self.consequence(span, "so this is not solved, and the run ends here");
             return Flow::Stop;
         }
@@ -337,7 +340,7 @@ impl<'h> Machine<'h> {
         let standard = Aim::default();
         let stated = |name| {
             let of_model = self.models.get(&model).and_then(|m| m.get(name));
-            of_model.or_else(|| self.options.number(name))
+            of_model.map(number).or_else(|| self.options.number(name))
         };
         let number = |name, default| {
             let value: f64 = stated(name).unwrap_or(default);

@@ -5,6 +5,7 @@ use super::line::Line;
 use super::preprocess::Preprocessor;
 use super::{FileId, Outcome};
 use crate::diag::Diagnostic;
+use crate::source::Span;
 
 impl Preprocessor<'_> {
     /// `$onText … $offText`: what stands between is not read.
@@ -101,17 +102,17 @@ impl Preprocessor<'_> {
     }
 
     /// Remembers what `$echo` writes: a later `$include`, and the run, may read it; the run writes it.
-    pub(super) fn echo(&mut self, file: &str, text: &str, append: bool) {
+    pub(super) fn echo(&mut self, file: &str, text: &str, append: bool, span: Span) {
         let name = file.trim();
-        let files = &mut self.map.written;
-        let (spelled, entry) = files.entry(name.to_lowercase()).or_default();
-        if spelled.is_empty() {
-            *spelled = name.to_owned();
+        let written = self.map.written.entry(name.to_lowercase()).or_default();
+        if written.name.is_empty() {
+            written.name = name.to_owned();
         }
         if !append {
-            entry.clear();
+            written.bytes.clear();
         }
-        entry.extend_from_slice(text.as_bytes());
+        written.bytes.extend_from_slice(text.as_bytes());
+        written.span = span;
     }
 
     pub(super) fn echo_block(
@@ -137,7 +138,8 @@ impl Preprocessor<'_> {
             }
             text.push('\n');
         }
-        self.echo(&file, &text, append);
+        let span = self.place(lo, hi);
+        self.echo(&file, &text, append, span);
         if closed {
             return Ok(());
         }

@@ -462,7 +462,8 @@ impl Preprocessor<'_> {
                 let text = unquoted(body.trim_end_matches('>')).to_owned()
                     + if word == "echo" { "\n" } else { "" };
                 let append = body.ends_with('>');
-                self.echo(file_name(file), &text, append);
+                let span = self.place(lo, hi);
+                self.echo(file_name(file), &text, append, span);
             }
             "onecho" | "onechos" | "onechov" => {
                 return self.echo_block(line, word, &suffix, rest, lo, hi);

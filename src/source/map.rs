@@ -46,6 +46,16 @@ struct Segment {
     marked: bool,
 }
 
+/// A file that the run has written.
+#[derive(Clone, Default, Debug)]
+pub(crate) struct Written {
+    /// Its name, as spelled.
+    pub name: String,
+    pub bytes: Vec<u8>,
+    /// What wrote it.
+    pub span: Span,
+}
+
 /// All files of a run, and where each piece of the expanded text came from.
 #[derive(Clone, Default, Debug)]
 pub struct SourceMap {
@@ -54,8 +64,8 @@ pub struct SourceMap {
     segments: Vec<Segment>,
     /// From which byte of the expanded text on how many lines a listing counts more than the file.
     listing: Vec<(u32, i64)>,
-    /// Files that the run has written, `$echo` and `$unload` first, by lower-case name: their names as spelled, and bytes.
-    pub(crate) written: BTreeMap<String, (String, Vec<u8>)>,
+    /// Files that the run has written, `$echo` and `$unload` first, by lower-case name.
+    pub(crate) written: BTreeMap<String, Written>,
     /// What `$title` said last.
     pub(crate) title: Option<String>,
     /// The label of `$phantom`: data leave out the records that have it.
@@ -81,7 +91,7 @@ impl SourceMap {
     /// The bytes of a file that the run has written.
     pub fn written(&self, name: &str) -> Option<&[u8]> {
         let found = self.written.get(&name.to_lowercase());
-        found.map(|(_, bytes)| bytes.as_slice())
+        found.map(|w| w.bytes.as_slice())
     }
 
     /// The text of a file that the run has written.
@@ -90,9 +100,10 @@ impl SourceMap {
     }
 
     /// Keeps a file that the run writes: it may be read again.
-    pub fn remember(&mut self, name: &str, bytes: Vec<u8>) {
-        let file = self.written.entry(name.to_lowercase()).or_default();
-        *file = (name.to_owned(), bytes);
+    pub fn remember(&mut self, name: &str, bytes: Vec<u8>, span: Span) {
+        let name = name.to_owned();
+        let file = Written { name, bytes, span };
+        self.written.insert(file.name.to_lowercase(), file);
     }
 
     /// Adds a file.

@@ -46,6 +46,8 @@ pub type SymbolKindName = &'static str;
 pub struct PreprocessOptions {
     /// `-D name=value`.
     pub defines: Vec<(String, String)>,
+    /// A define that nothing reads is warned of.
+    pub warns_of_unused: bool,
     /// The file is a `.blk`: `//` begins a comment.
     pub slash_comments: bool,
     /// What the data in the text may take, in bytes.

@@ -3,6 +3,7 @@
 //! Three scopes, as in GAMS: `$setLocal` lives in its file, `$set` in its file and the files that it
 //! includes, `$setGlobal` everywhere. The innermost wins. Names are compared without regard to case.
 
+use crate::diag::nearest;
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::cell::RefCell;
 
@@ -17,6 +18,8 @@ pub(crate) struct Variables {
     files: Vec<(Scope, Scope)>,
     /// Names from outside that nothing has asked for yet.
     unused: RefCell<FxHashSet<String>>,
+    /// Names that the text has asked for, while there are unused ones.
+    asked: RefCell<FxHashSet<String>>,
 }
 
 /// The three ways of defining a name.
@@ -57,6 +60,21 @@ impl Variables {
         self.unused.get_mut().insert(name.to_ascii_lowercase());
     }
 
+    fn asks(&self, name: &str) {
+        let mut unused = self.unused.borrow_mut();
+        unused.remove(name);
+        let mut asked = self.asked.borrow_mut();
+        if !unused.is_empty() && !asked.contains(name) {
+            asked.insert(name.to_string());
+        }
+    }
+
+    /// The name most like another among those that the text has asked for.
+    pub(crate) fn nearest(&self, name: &str) -> Option<String> {
+        let asked = self.asked.borrow();
+        nearest(name, asked.iter().map(String::as_str)).map(String::from)
+    }
+
     /// Names from outside that nothing has asked for, in alphabetical order.
     pub(crate) fn unused(&self) -> Vec<String> {
         let mut names: Vec<String> = self.unused.borrow().iter().cloned().collect();
@@ -81,7 +99,7 @@ impl Variables {
     /// What a name stands for.
     pub(super) fn get(&self, name: &str) -> Option<&str> {
         let name = name.to_ascii_lowercase();
-        self.unused.borrow_mut().remove(&name);
+        self.asks(&name);
         let local = self.files.last().and_then(|(_, local)| local.get(&name));
         local
             .or_else(|| self.files.iter().rev().find_map(|(s, _)| s.get(&name)))
@@ -92,7 +110,7 @@ impl Variables {
     /// Whether a name is defined in one scope (`$if setLocal x`).
     pub(super) fn has(&self, reach: Reach, name: &str) -> bool {
         let name = name.to_ascii_lowercase();
-        self.unused.borrow_mut().remove(&name);
+        self.asks(&name);
         match reach {
             Reach::Local => self
                 .files

@@ -329,8 +329,8 @@ impl<'h> Parser<'h> {
     }
 
     /// Keeps a file that the run writes; what follows may read it.
-    pub fn remember(&mut self, name: &str, bytes: Vec<u8>) {
-        self.text.map.remember(name, bytes);
+    pub fn remember(&mut self, name: &str, bytes: Vec<u8>, span: Span) {
+        self.text.map.remember(name, bytes, span);
     }
 
     /// The files and the expanded text so far.
@@ -341,6 +341,18 @@ impl<'h> Parser<'h> {
     /// Names that `-D` defined and the text never asked for.
     pub fn unused_defines(&self) -> Vec<String> {
         self.text.names.unused()
+    }
+
+    /// A warning of each of them.
+    pub(crate) fn warnings_of_unused(&self) -> impl Iterator<Item = Diagnostic> {
+        self.unused_defines().into_iter().map(|name| {
+            let d = Diagnostic::warning("E0117", Span::default()).says(format!(
+                "`-D {name}` has no effect: nothing in the text reads `%{name}%`"
+            ));
+            let nearest = self.text.names.nearest(&name);
+            let otherwise = "a name that the text reads stands in it as `%name%`";
+            d.did_you_mean(nearest.map(|n| format!("-D {n}")), otherwise)
+        })
     }
 
     /// The files and the expanded text, when parsing is done.

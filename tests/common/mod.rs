@@ -162,7 +162,7 @@ pub fn run(host: &mut dyn Host, file: &str, options: Options) -> Finished {
 
 /// Runs a file on disk; it may read what is below `allowed` besides its own folder.
 pub fn run_file(file: &Path, allowed: &[PathBuf], options: Options) -> Finished {
-    let mut host = SystemHost::new(file, Path::new("."), allowed, Output::Quiet);
+    let mut host = SystemHost::new(file, None, allowed, Output::Quiet);
     run(&mut host, &file.to_string_lossy(), options)
 }
 

@@ -54,7 +54,7 @@ export type Solve = {
 
 export type Report = {
   bmod: string;
-  status: 'ok' | 'compilation_error' | 'execution_error' | 'aborted';
+  status: 'ok' | 'compilation_error' | 'execution_error' | 'aborted' | 'interrupted';
   solves: Solve[];
   files: string[];
   diagnostics: Diagnostic[];

@@ -32,6 +32,7 @@ export const texts = {
     compilation_error: 'The text does not compile: the messages say why.',
     execution_error: 'Something went wrong while it ran: the messages say what.',
     aborted: 'The model stopped itself (abort).',
+    interrupted: 'The run was stopped; the messages say where.',
   } as Record<string, string>,
   // What GAMS's model statuses mean, in words.
   modelStatus: {

@@ -519,7 +519,7 @@ impl Compiler {
         let store = &mut self.store;
         let files = unload(&self.symbols, store, &self.equations, &file, &items, span)?;
         for (name, bytes) in files {
-            parser.remember(&name, bytes);
+            parser.remember(&name, bytes, span);
         }
         Ok(())
     }
