@@ -28,6 +28,7 @@ mod mpec;
 mod nonlinear;
 mod options;
 mod planner;
+mod scales;
 mod scenes;
 mod suite;
 mod syntax;
