@@ -540,6 +540,21 @@ fn a_report_has_the_dual_or_the_conditions() {
     }
 }
 
+/// Rows that differ by 3e-8 of their size are two: one has the price. Numbers without end are as in all reports.
+#[test]
+fn ranges_tell_near_rows_apart() {
+    let text = "variables x, z;  equations o, a, b;  o..  z =e= 3*x;  a..  x =g= 4000000123;  b..  x =g= 4000000000;
+        model m / all /;  solve m using lp min z;";
+    let said = told(&["range", "told.blk", "--format", "json"], text);
+    let all: serde_json::Value = serde_json::from_str(&said).expect("JSON");
+    let number = |row: usize, key: &str| all["rows"][row][key].as_f64();
+    assert_eq!(number(0, "price_above"), Some(3.0), "{said}");
+    assert_eq!(number(1, "price_below"), Some(0.0), "{said}");
+    assert_eq!(number(1, "to"), Some(4_000_000_123.0), "{said}");
+    assert_eq!(all["rows"][0]["to"], "+INF");
+    assert_eq!(all["rows"][1]["from"], "-INF");
+}
+
 /// What no command and no record is called.
 #[test]
 fn names_that_are_not_there_are_told() {

@@ -30,6 +30,7 @@ mod mpec;
 mod nonlinear;
 mod options;
 mod planner;
+mod scales;
 mod scenes;
 mod silence;
 mod suite;

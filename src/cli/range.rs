@@ -52,8 +52,8 @@ fn json(m: &Machine, primal: &Primal, r: &Ranges) -> String {
     // Infinite numbers are words, as in bmod's other reports.
     let number = |x: f64| match x.is_finite() {
         true => serde_json::json!(x),
-        false if x > 0.0 => serde_json::json!("inf"),
-        false if x < 0.0 => serde_json::json!("-inf"),
+        false if x > 0.0 => serde_json::json!("+INF"),
+        false if x < 0.0 => serde_json::json!("-INF"),
         false => serde_json::Value::Null,
     };
     let rows = r.rows.iter().map(|r| {

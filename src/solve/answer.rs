@@ -83,12 +83,48 @@ pub fn answer_with(
     if nonlinear && !task.has_integers() && !task.has_pairs() {
         equations_before_bounds(task.instance, &mut found.outcome);
     }
-    noise::zero_below_roundoff(&mut found.outcome.column_marginal);
-    if task.using != ProblemType::Mcp {
-        // there they are levels
-        noise::zero_below_roundoff(&mut found.outcome.row_marginal);
+    if !task.instance.is_linear() || task.using == ProblemType::Mcp {
+        without_noise(task, &mut found.outcome);
     }
     Ok(found)
+}
+
+/// Marginals without rounding errors; as they are where the point has no derivatives.
+fn without_noise(task: &Task, outcome: &mut Outcome) {
+    let instance = task.instance;
+    let sizes = (outcome.row_marginal.len(), outcome.column_marginal.len());
+    if sizes != (instance.row_count(), instance.column_count()) {
+        return;
+    }
+    if task.using == ProblemType::Mcp {
+        // marginals of rows are levels, those of columns what their rows are off by
+        let (_, at) = point(instance, outcome);
+        let matched = instance.matched.iter().flatten();
+        for (d, i) in outcome.column_marginal.iter_mut().zip(matched) {
+            if i.is_some_and(|i| noise::is_rounding(*d, at.row_size[i as usize].max(1.0))) {
+                *d = 0.0;
+            }
+        }
+        return;
+    }
+    let (y, d) = (&mut outcome.row_marginal, &mut outcome.column_marginal);
+    if instance.is_linear() {
+        // a column without a cost has no terms but errors
+        let costs = instance.objective_row().into_iter().flat_map(|(i, own)| {
+            let entries = instance.matrix.row(i);
+            entries.map(move |(_, a)| (a / own).abs())
+        });
+        let least = costs.filter(|c| *c > 0.0).reduce(f64::min).unwrap_or(0.0);
+        return noise::clear(|i| instance.matrix.row(i), least, y, d);
+    }
+    let mut evaluator = Evaluator::first_order(instance);
+    let mut value = vec![0.0; evaluator.jacobian_pattern().1.len()];
+    if evaluator.jacobian(&outcome.level, &mut value).is_ok() {
+        let (start, column) = evaluator.jacobian_pattern();
+        let entry = |k: usize| (column[k] as usize, value[k]);
+        // iterations leave errors of this unit, whatever the slopes
+        noise::clear(|i| (start[i]..start[i + 1]).map(entry), 1.0, y, d);
+    }
 }
 
 /// A column at a bound that an equation of its own holds there as well has one marginal for both, which methods share out
@@ -361,11 +397,14 @@ fn missing(task: &Task) -> SolveError {
 /// the multipliers belong, if that is another one.
 fn certified(task: &Task, reply: Reply, dual: Option<Residuals>) -> Answer {
     let Reply {
-        outcome,
+        mut outcome,
         stationarity,
         bounds,
         search,
     } = reply;
+    if task.instance.is_linear() && task.using != ProblemType::Mcp {
+        without_noise(task, &mut outcome);
+    }
     let (mut residuals, activity) = measured(task, &outcome, search.as_ref());
     if let Some(dual) = dual {
         let instance = task.instance;
@@ -400,10 +439,11 @@ fn is_linear_program(task: &Task) -> bool {
 
 /// A remark where a row of a solution misses more than rounding, which the tolerance allows.
 fn tell_of_rounding(found: &mut Answer) {
-    let miss = found.residuals.primal_relative;
-    if found.status.is_solution() && miss > ROUNDED && found.outcome.message.is_none() {
+    let remarkable = found.residuals.primal_relative > ROUNDED;
+    if found.status.is_solution() && remarkable && found.outcome.message.is_none() {
+        let miss = found.residuals.primal.unwrap_or(0.0);
         found.outcome.message = Some(format!(
-            "a row is missed by {miss:.0e} of its terms, as rounded data are: that is within the tolerance"
+            "a row is missed by {miss:.0e}, as rounded data are: that is within the tolerance"
         ));
     }
 }
@@ -571,8 +611,12 @@ pub fn certify(instance: &Instance, answer: &Answer, budget: &Budget) -> Result<
     })
 }
 
-/// From here on, relative to the terms of a row, what it misses is worth a remark.
+/// From here on, relative as the tolerance is, what a row misses is worth a remark.
 const ROUNDED: f64 = 1e-8;
+
+/// What a program that is proved to have no point may miss, as after data that were rounded to seven digits: it is solved all
+/// the same.
+const PROVED: f64 = 1e-7;
 
 /// What rows miss by the arithmetic alone.
 const ARITHMETIC: f64 = 1e-12;
@@ -595,7 +639,12 @@ fn least_violation(
     let primal = |r: &Residuals| r.primal.unwrap_or(f64::INFINITY);
     let integers = task.has_integers();
     let moves = !integers || primal(&near.residuals) > ARITHMETIC;
-    if moves && near.residuals.is_feasible(TOLERANCE) {
+    let proved = matches!(
+        found.status,
+        ModelStatus::Infeasible | ModelStatus::IntegerInfeasible
+    );
+    let tolerance = if proved { PROVED } else { TOLERANCE };
+    if moves && near.residuals.is_feasible(tolerance) {
         let moved = moved(instance, &near.activity);
         let inner = Task {
             instance: &moved,

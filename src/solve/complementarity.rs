@@ -265,7 +265,15 @@ fn solve(
     };
     let (mut out, status) = run(&mut problem, &names, settings, budget)?;
     let (lower, upper) = (&instance.columns.lower, &instance.columns.upper);
-    noise::snap(&mut out.x, lower, upper);
+    let mut evaluator = Evaluator::first_order(instance);
+    let mut value = vec![0.0; evaluator.jacobian_pattern().1.len()];
+    if evaluator.jacobian(&out.x, &mut value).is_ok() {
+        let (start, column) = evaluator.jacobian_pattern();
+        let entry = |k: usize| (column[k] as usize, value[k]);
+        let row = |i: usize| (start[i]..start[i + 1]).map(entry);
+        let errors = noise::rounding_in_rows(&out.x, instance.row_count(), row);
+        noise::snap(&mut out.x, lower, upper, &errors);
+    }
     if square && out.status != mcp::Status::Solved {
         // The rows do not hold: the bounds shall.
         clip(&mut out.x, (lower, upper));

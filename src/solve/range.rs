@@ -66,12 +66,12 @@ pub struct Ranges {
     pub unfinished: bool,
 }
 
-/// How near to a bound is at it, relative.
-const NEAR: f64 = 1e-7;
+/// How near to a bound is at it, relative to the two.
+const NEAR: f64 = 1e-10;
 /// A multiplier below this is 0, in the units of the scaled program.
 const NO_PRICE: f64 = 1e-9;
 /// An end nearer to 0 than this, relative to the number and the way from it, is 0.
-const END_TOLERANCE: f64 = 1e-8;
+const END_TOLERANCE: f64 = 1e-10;
 /// A sum below this is rounding, relative to its terms.
 const ROUNDING: f64 = 1e-12;
 /// A direction in which one variable moves this much farther than another is none, where that is in doubt.
@@ -113,13 +113,13 @@ pub fn ranges(
 }
 
 fn near(a: f64, b: f64) -> bool {
-    b.is_finite() && (a - b).abs() <= NEAR * (1.0 + a.abs().max(b.abs()))
+    b.is_finite() && (a - b).abs() <= NEAR * a.abs().max(b.abs()).max(1.0)
 }
 
-/// A number without the rounding of a linear program: the nearest with nine digits.
+/// A number without the rounding of a linear program: the nearest with eleven digits.
 fn rounded(x: f64) -> f64 {
     match x.is_finite() && x != 0.0 {
-        true => format!("{x:.8e}").parse().unwrap_or(x),
+        true => format!("{x:.10e}").parse().unwrap_or(x),
         false => x,
     }
 }

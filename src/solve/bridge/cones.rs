@@ -47,6 +47,9 @@ const SOLVED: f64 = 1e-7;
 /// A certificate holds to this, relative to what it proves.
 const CERTIFICATE_TOLERANCE: f64 = 1e-7;
 
+/// Terms of multipliers this small beside the largest are errors of the method.
+const SLIGHT: f64 = 1e-9;
+
 /// A reduced cost below this, relative to its terms, is rounding, however far a bound is.
 const ROUNDING: f64 = 1e-12;
 
@@ -514,11 +517,8 @@ impl Conic {
     /// Whether multipliers prove that there is no point: what the rows, bounds and cones add up to is a contradiction.
     fn is_infeasible(&self, y: &[f64], duals: &[f64]) -> bool {
         let p = &self.linear;
-        let (sum, _) = self.combined(y, duals);
-        let all = y.iter().chain(duals);
-        let largest = all.fold(0.0f64, |t, v| t.max(v.abs()));
-        // the largest coefficient of each column
-        let (_, entry) = self.combined(&vec![1.0; y.len()], &vec![1.0; duals.len()]);
+        let (y, duals) = self.without_slight(y, duals);
+        let (sum, size) = self.combined(&y, &duals);
         let mut proved = 0.0;
         let mut scale = 0.0f64;
         let mut add = |v: f64| {
@@ -538,18 +538,46 @@ impl Conic {
         }
         let expressions = self.cones.iter().flat_map(|c| &c.expressions);
         expressions
-            .zip(duals)
+            .zip(&duals)
             .for_each(|(e, mu)| add(-e.constant * mu));
         // Σ y a x + Σ μ (D x) = Σ sum x ≥ proved for every feasible x; at most this
         for j in 0..p.n() {
             let bound = if sum[j] > 0.0 { p.upper[j] } else { p.lower[j] };
             match bound.is_finite() {
                 true => add(-sum[j] * bound),
-                false if sum[j].abs() <= CERTIFICATE_TOLERANCE * largest * entry[j] => {}
+                false if sum[j].abs() <= CERTIFICATE_TOLERANCE * size[j] => {}
                 false => return false,
             }
         }
         proved > CERTIFICATE_TOLERANCE * scale.max(f64::MIN_POSITIVE)
+    }
+
+    /// Multipliers without rows and cones whose terms are slight beside the largest: they are not part of a proof, but times a
+    /// column without a bound they could be all of it.
+    fn without_slight(&self, y: &[f64], duals: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let (_, size) = self.combined(y, duals);
+        let slight = SLIGHT * size.into_iter().fold(0.0, f64::max);
+        let (mut y, mut duals) = (y.to_vec(), duals.to_vec());
+        for (i, y) in y.iter_mut().enumerate() {
+            if self
+                .linear
+                .rows
+                .line(i)
+                .all(|(_, a)| (a * *y).abs() <= slight)
+            {
+                *y = 0.0;
+            }
+        }
+        let mut rest = &mut duals[..];
+        for cone in &self.cones {
+            let (own, others) = rest.split_at_mut(cone.expressions.len());
+            let mut terms = cone.expressions.iter().zip(&*own);
+            if terms.all(|(e, mu)| e.terms.iter().all(|t| (t.1 * mu).abs() <= slight)) {
+                own.fill(0.0);
+            }
+            rest = others;
+        }
+        (y, duals)
     }
 
     /// Whether a direction keeps all rows, bounds and cones and makes the objective better.

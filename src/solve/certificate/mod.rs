@@ -16,8 +16,8 @@
 //! * **natural** residual (complementarity models): max |x − mid(l, u, x − F)|.
 //!
 //! These are absolute numbers, in the model's units. Whether they are small is judged relative to
-//! the data: the violation of row i relative to max(|rhs_i|, max_j |a_ij|·max(|x_j|, ξ)), that of a
-//! multiplier of column j relative to max_i |a_ij|·max(|m_i|, η), the gap relative to the largest
+//! the data: the violation of row i relative to max(|rhs_i|, max_j |a_ij x_j|, max_j min(|a_ij| ξ, 1)), of
+//! which only a thousandth counts beyond 1, that of a multiplier of column j relative to max_i |a_ij|·max(|m_i|, η), the gap relative to the largest
 //! term of the two objectives or ξη. ξ is 1, or the largest level that right-hand sides and bounds
 //! suggest where that is smaller; η is 1, or the largest cost (see [`units`]). So an instance in
 //! other units has the same status, and noise around 0 is not mistaken for a violation. The
@@ -29,10 +29,20 @@ use crate::model::instance::{INFINITE, Instance, Relation, Sense};
 use crate::model::outcome::{Claim, ModelStatus, Outcome};
 use crate::model::sum::Sum;
 use crate::solve::lp::form::{self, Problem};
+use crate::solve::noise::is_rounding;
 use crate::solve::vector::largest;
 
 /// Relative tolerance for primal and dual residuals and the gap.
 pub const TOLERANCE: f64 = 1e-6;
+
+/// What of a size above 1 counts: rows and bounds are judged by [`TOLERANCE`], or by this times it relative to terms of a
+/// thousand and more.
+const OF_LARGE: f64 = 1e-3;
+
+/// What a violation is relative to in a row whose largest term, or at a bound whose size, is this.
+pub fn unit_of(size: f64) -> f64 {
+    size.min(1.0).max(OF_LARGE * size)
+}
 
 /// Largest violations, in the model's units; None where one does not apply.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -98,7 +108,7 @@ pub struct Linearised {
     pub activity: Vec<f64>,
     /// r_j = \[j = z\] − Σ_i m_i a_ij.
     pub reduced: Vec<f64>,
-    /// max_j |a_ij|·max(|x_j|, ξ), per row.
+    /// max_j max(|a_ij x_j|, min(|a_ij| ξ, 1)), per row.
     pub row_size: Vec<f64>,
     /// max_i |a_ij|·max(|m_i|, η), per column.
     pub column_size: Vec<f64>,
@@ -145,9 +155,11 @@ pub fn linearise(instance: &Instance, outcome: &Outcome) -> Linearised {
         column_size: vec![0.0; n],
     };
     let mut reduced = vec![Sum::default(); n];
+    let mut terms = vec![0.0f64; n];
     if let Some(objective) = instance.objective {
         reduced[objective.column as usize].add(1.0);
         out.column_size[objective.column as usize] = 1.0;
+        terms[objective.column as usize] = 1.0;
     }
     for i in 0..m {
         let multiplier = outcome.row_marginal[i];
@@ -155,15 +167,20 @@ pub fn linearise(instance: &Instance, outcome: &Outcome) -> Linearised {
         let mut size = 0.0f64;
         for (j, a) in instance.matrix.row(i) {
             activity.add_product(a, x[j]);
-            size = size.max((a * x[j].abs().max(xi)).abs());
+            // a large coefficient of what is 0 is no size
+            size = size.max((a * x[j]).abs()).max((a.abs() * xi).min(1.0));
             reduced[j].add_product(-multiplier, a);
+            terms[j] = terms[j].max((a * multiplier).abs());
             let dual_size = (a * multiplier.abs().max(eta)).abs();
             out.column_size[j] = out.column_size[j].max(dual_size);
         }
         out.activity.push(activity.value());
         out.row_size.push(size);
     }
-    out.reduced = reduced.into_iter().map(Sum::value).collect();
+    // a rounding error of a basic column, times the way to a bound far off, is no complementarity
+    let reduced = reduced.into_iter().map(Sum::value).zip(terms);
+    let without_noise = |(r, largest)| if is_rounding(r, largest) { 0.0 } else { r };
+    out.reduced = reduced.map(without_noise).collect();
     out
 }
 
@@ -220,7 +237,7 @@ pub fn primal(instance: &Instance, x: &[f64], activity: &[f64], row_size: &[f64]
     let mut relative_worst = 0.0f64;
     let mut count = 0;
     let mut judge = |violation: f64, size: f64| {
-        let r = relative(violation, size);
+        let r = relative(violation, unit_of(size));
         relative_worst = relative_worst.max(if r.is_nan() { f64::INFINITY } else { r });
         count += usize::from(r.is_nan() || r > TOLERANCE);
     };
@@ -330,7 +347,7 @@ pub fn linear(instance: &Instance, outcome: &Outcome) -> Residuals {
 /// Residuals of a complementarity model: natural, complementarity, and the equations that are
 /// matched with nothing. `at` is the instance at the levels x.
 ///
-/// Both sides of a pair are measured, the variable in units of max(1, |x_j|) and the row in units of its largest term: on the
+/// Both sides of a pair are measured, the variable in units of |x_j| and the row in units of its largest term, both by [`unit_of`]: on the
 /// way to infinity, where a model without a solution leads, what is missing in a row is small beside x_j.
 pub fn complementarity(instance: &Instance, x: &[f64], at: &Linearised) -> Residuals {
     let nothing = Vec::new();
@@ -351,7 +368,7 @@ pub fn complementarity(instance: &Instance, x: &[f64], at: &Linearised) -> Resid
         let (step, size) = match partner {
             Some(i) => {
                 taken[i] = true;
-                (f(i), at.row_size[i].max(1.0))
+                (f(i), unit_of(at.row_size[i].max(1.0)))
             }
             None => (0.0, 1.0),
         };
@@ -361,7 +378,7 @@ pub fn complementarity(instance: &Instance, x: &[f64], at: &Linearised) -> Resid
             Some(i) => row.see(natural, i),
             None => column.see(natural, j),
         }
-        let unit = x.abs().max(1.0);
+        let unit = unit_of(x.abs().max(1.0));
         see(residual(step * (unit / size)) / unit);
         let bound = if step > 0.0 { l } else { u };
         if (x - bound).abs() > TOLERANCE * unit && step.abs() > TOLERANCE * size {
@@ -380,12 +397,13 @@ pub fn complementarity(instance: &Instance, x: &[f64], at: &Linearised) -> Resid
         let v = row_violation(instance.rows.relation[i], f(i), 0.0);
         row.see(v, i);
         pairs = pairs.max(v);
-        if v > TOLERANCE * at.row_size[i].max(1.0) {
+        let unit = unit_of(at.row_size[i].max(1.0));
+        if v > TOLERANCE * unit {
             off.add(v);
             farthest = farthest.max(v);
             count += 1;
         }
-        see(v / at.row_size[i].max(1.0));
+        see(v / unit);
     }
     Residuals {
         natural: Some(row.value.max(column.value)),
@@ -450,11 +468,10 @@ pub fn proves_unbounded(instance: &Instance, d: &[f64]) -> bool {
 
 /// Model status of a linear program: what the point and the rays prove.
 pub fn linear_status(instance: &Instance, outcome: &Outcome, r: &Residuals) -> ModelStatus {
-    if r.is_optimal(TOLERANCE) {
-        return ModelStatus::Optimal;
-    }
     match outcome.claim {
+        // a proof outweighs a point that is within the tolerance
         Claim::Infeasible if proves_infeasible(instance, &outcome.ray) => ModelStatus::Infeasible,
+        _ if r.is_optimal(TOLERANCE) => ModelStatus::Optimal,
         Claim::Unbounded if proves_unbounded(instance, &outcome.ray) => {
             if r.is_feasible(TOLERANCE) {
                 ModelStatus::Unbounded

@@ -62,17 +62,12 @@ pub fn linearise(
         reduced[objective.column as usize].add(1.0);
         column_size[objective.column as usize] = 1.0;
     }
-    let nonlinear = instance.nonlinear_rows();
     for i in 0..m {
         for k in start[i]..start[i + 1] {
             let (j, a) = (column[k] as usize, value[k]);
-            // A slope that varies says little about the size of its row where the variable is small:
-            // in y·z ≤ μ at y = 0 it is z, which may be anything.
-            let floor = if nonlinear[i] {
-                (a.abs() * xi).min(1.0)
-            } else {
-                a.abs() * xi
-            };
+            // A slope says little about the size of its row where the variable is small: in y·z ≤ μ at y = 0 it is z, which
+            // may be anything, as may the coefficient of a switch.
+            let floor = (a.abs() * xi).min(1.0);
             row_size[i] = row_size[i].max((a * x[j]).abs()).max(floor);
         }
         let multiplier = row_marginal[i];

@@ -2,6 +2,7 @@
 
 use crate::model::instance::{ColumnKind, Instance, OrderedSet};
 use crate::solve::SolveError;
+use crate::solve::certificate::unit_of;
 use crate::solve::lp::form::{Form, Problem};
 use crate::solve::lp::scale::Scaling;
 
@@ -222,13 +223,13 @@ impl Mip {
     pub fn is_feasible(&self, x: &[f64]) -> bool {
         let p = &self.problem;
         let inside = |(j, &x): (usize, &f64)| {
-            let slack = FEASIBLE * x.abs().max(1.0);
+            let slack = FEASIBLE * unit_of(x.abs().max(1.0));
             x >= p.lower[j] - slack && x <= p.upper[j] + slack
         };
         let row = |i: usize| {
             let terms = p.rows.line(i).map(|(j, a)| a * x[j]);
             let (sum, size) = terms.fold((0.0, 1.0f64), |(s, z), t: f64| (s + t, z.max(t.abs())));
-            let slack = FEASIBLE * size;
+            let slack = FEASIBLE * unit_of(size);
             sum >= p.row_lower[i] - slack && sum <= p.row_upper[i] + slack
         };
         x.iter().enumerate().all(inside) && (0..p.m()).all(row)

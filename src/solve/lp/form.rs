@@ -193,6 +193,30 @@ impl Problem {
         out
     }
 
+    /// Takes what fixed columns add from the sides of the rows, and leaves them fixed at 0: their terms may be far larger than all
+    /// others. Their values.
+    pub fn move_fixed(&mut self) -> Vec<f64> {
+        let mut value = vec![0.0; self.n()];
+        for (j, value) in value.iter_mut().enumerate() {
+            if self.lower[j] == self.upper[j] {
+                *value = self.lower[j];
+                (self.lower[j], self.upper[j]) = (0.0, 0.0);
+                self.offset += self.cost[j] * *value;
+            }
+        }
+        for i in (0..self.m()).filter(|&i| self.rows.line(i).any(|(j, _)| value[j] != 0.0)) {
+            for side in [&mut self.row_lower[i], &mut self.row_upper[i]] {
+                let mut left = Sum::new(*side);
+                let terms = self.rows.line(i).filter(|e| value[e.0] != 0.0);
+                if side.is_finite() {
+                    terms.for_each(|(j, a)| left.add_product(-a, value[j]));
+                    *side = left.value();
+                }
+            }
+        }
+        value
+    }
+
     /// Whether y proves the problem infeasible, clearly: more strictly than
     /// [`crate::solve::certificate`] asks.
     pub fn proves_infeasible(&self, y: &[f64]) -> bool {

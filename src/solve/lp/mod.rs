@@ -216,7 +216,8 @@ fn solve(
     let accuracy = Accuracy::new(settings);
     let strategies = settings.strategies();
     let tolerance = settings.number("tolerance");
-    let form = Form::new(instance)?;
+    let mut form = Form::new(instance)?;
+    let fixed = form.problem.move_fixed();
     let scaling = Scaling::new(&form.problem);
     let scaled = scaling.apply(&form.problem);
     budget.log_timed("scaling");
@@ -276,7 +277,10 @@ fn solve(
         _ => Vec::new(),
     };
     let mut point = scaling.restore(answer.point);
-    noise::snap(&mut point.x, &form.problem.lower, &form.problem.upper);
+    let p = &form.problem;
+    let errors = noise::rounding_in_rows(&point.x, p.m(), |i| p.rows.line(i));
+    noise::snap(&mut point.x, &p.lower, &p.upper, &errors);
+    point.x.iter_mut().zip(&fixed).for_each(|(x, v)| *x += v);
     let (level, row_marginal, column_marginal) = form.point(instance, &point);
     Ok(Outcome {
         level,
@@ -328,8 +332,10 @@ fn simplex_only(p: &Problem, accuracy: Accuracy, budget: &Budget) -> Gave {
 
 /// What the simplex method gave, a solution with the digits that are wanted.
 fn concluded(mut simplex: Simplex, ended: Ended, accuracy: Accuracy, budget: &Budget) -> Gave {
-    if ended == Ended::Solved {
-        tighten(&mut simplex, accuracy, budget);
+    if ended == Ended::Solved
+        && let infeasible @ Ended::Infeasible(_) = tighten(&mut simplex, accuracy, budget)
+    {
+        return simplex_answer(simplex, infeasible);
     }
     simplex_answer(simplex, ended)
 }
@@ -447,20 +453,22 @@ fn log_pivots(pivots: &[Pivot], form: &Form, scaling: &Scaling, budget: &Budget)
     }
 }
 
-fn tighten(simplex: &mut Simplex, accuracy: Accuracy, budget: &Budget) {
+/// How that ends: a proof that there is no point outweighs one to the usual tolerances.
+fn tighten(simplex: &mut Simplex, accuracy: Accuracy, budget: &Budget) -> Ended {
     if matches!(accuracy, Accuracy::Fast(_)) {
-        return;
+        return Ended::Solved;
     }
     let before = simplex.iterations;
     let mut tight = simplex.tighten(&mut watch(budget, u64::MAX));
-    if accuracy == Accuracy::High {
+    if accuracy == Accuracy::High && tight == Ended::Solved {
         let finest = [(1e-14, 1e-13), (1e-14, 1e-14)];
-        tight &= simplex.tighten_to(&finest, &mut watch(budget, u64::MAX));
+        tight = simplex.tighten_to(&finest, &mut watch(budget, u64::MAX));
     }
     let pivots = simplex.iterations - before;
-    let word = if tight { "" } else { "not " };
+    let word = if tight == Ended::Solved { "" } else { "not " };
     let line = format!("tightened after {pivots} pivots: {word}to rounding");
     budget.log_timed(&line);
+    tight
 }
 
 fn simplex_answer(mut simplex: Simplex, ended: Ended) -> Gave {

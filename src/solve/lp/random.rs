@@ -240,6 +240,34 @@ proptest! {
         }
     }
 
+    /// Levels far from 0 move the ends and nothing else: rows that differ by 1e-9 of their size are told apart.
+    #[test]
+    fn ranges_move_with_the_levels(p in parts(), by in prop::collection::vec(-4i32..=4, 7)) {
+        let Some((r, _)) = ranged(&p) else { return Ok(()) };
+        let far = |j: usize| 1e7 * f64::from(by[j]);
+        let mut q = p.clone();
+        for (j, b) in q.bounds.iter_mut().enumerate() {
+            *b = (b.0 + far(j), b.1 + far(j));
+        }
+        let moved = |row: &Row| row.0.iter().enumerate().map(|(j, a)| a * far(j)).sum::<f64>();
+        q.rows.iter_mut().for_each(|row| row.2 += moved(row));
+        let (there, _) = ranged(&q).expect("optimal as well");
+        prop_assert!(!there.unfinished);
+        let near = |a: f64, b: f64, by: f64| a == b || (a - b).abs() <= by;
+        prop_assert_eq!(there.rows.len(), r.rows.len());
+        for (a, b) in r.rows.iter().zip(&there.rows) {
+            let far = moved(&p.rows[a.row]);
+            for side in 0..2 {
+                prop_assert!(near(a.price[side], b.price[side], 1e-6), "{a:?} {b:?}");
+                prop_assert!(near(a.interval[side] + far, b.interval[side], 0.1), "{a:?} {b:?}");
+            }
+        }
+        for (a, b) in r.costs.iter().zip(&there.costs) {
+            let all = a.interval.iter().zip(&b.interval);
+            prop_assert!(all.into_iter().all(|(a, b)| near(*a, *b, 1e-6)), "{a:?} {b:?}");
+        }
+    }
+
     /// The point stays optimal for costs in their intervals, and for none outside: the program is solved again there.
     #[test]
     fn costs_are_those_of_solving_again(p in parts()) {

@@ -45,6 +45,23 @@ fn mean(values: impl Iterator<Item = f64>) -> f64 {
     }
 }
 
+/// Bounds so many times beyond what the rows ask for are as good as none: no point is near them.
+const FAR: f64 = 1e6;
+
+/// The size of right-hand sides and of the bounds that are not far beyond them.
+fn size_of(p: &Problem, row: &[f64], column: &[f64]) -> f64 {
+    let counts = |v: &f64| *v > 0.0 && v.is_finite();
+    let sides = [&p.row_lower, &p.row_upper].map(|s| s.iter().zip(row));
+    let sides = sides.into_iter().flatten().map(|(b, r)| (b * r).abs());
+    let bounds = [&p.lower, &p.upper].map(|s| s.iter().zip(column));
+    let bounds = bounds.into_iter().flatten().map(|(b, c)| (b / c).abs());
+    let unit = match sides.clone().any(|s| counts(&s)) {
+        true => mean(sides.clone()),
+        false => bounds.clone().filter(counts).fold(f64::INFINITY, f64::min),
+    };
+    mean(sides.chain(bounds.filter(|b| *b <= FAR * unit)))
+}
+
 impl Scaling {
     /// Chooses factors for a problem.
     pub fn new(p: &Problem) -> Self {
@@ -86,9 +103,12 @@ impl Scaling {
         let unit = |u: &Option<f64>| u.map_or(1.0, power_of_two);
         let mut column: Vec<f64> = units.iter().map(unit).collect();
         let free = |j: &usize| units[*j].is_none();
+        // what does not move says nothing about a row's unit
+        let moves = |e: &(usize, f64)| p.lower[e.0] < p.upper[e.0] || !free(&e.0);
         for _ in 0..4 {
             for (i, r) in row.iter_mut().enumerate() {
-                *r = 1.0 / extremes(p.rows.line(i).map(|(j, v)| v * column[j]));
+                let entries = p.rows.line(i).filter(moves);
+                *r = 1.0 / extremes(entries.map(|(j, v)| v * column[j]));
             }
             for (j, c) in column.iter_mut().enumerate().filter(|e| free(&e.0)) {
                 *c = 1.0 / extremes(p.columns.line(j).map(|(i, v)| v * row[i]));
@@ -102,15 +122,7 @@ impl Scaling {
                 v => power_of_two(1.0 / v),
             };
         }
-        let bounds = p.lower.iter().chain(&p.upper).zip(column.iter().cycle());
-        let bounds = bounds.map(|(&b, &c)| b / c);
-        let sides = p
-            .row_lower
-            .iter()
-            .chain(&p.row_upper)
-            .zip(row.iter().cycle());
-        let sides = sides.map(|(&b, &r)| b * r);
-        let size = power_of_two(mean(bounds.chain(sides)));
+        let size = power_of_two(size_of(p, &row, &column));
         let price = power_of_two(mean(p.cost.iter().zip(&column).map(|(&q, &c)| q * c)));
         Self {
             row,

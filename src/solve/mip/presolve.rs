@@ -452,7 +452,7 @@ fn rows(mip: &mut Mip, idle: &mut [bool]) -> bool {
             high += most;
             size = [size[0].max(finite(least)), size[1].max(finite(most))];
         }
-        let slack = size.map(|s| 1e-9 * s);
+        let slack = size.map(|s| (1e-9 * s.min(1.0)).max(4.0 * f64::EPSILON * s));
         if p.row_lower[i].is_finite() && low >= p.row_lower[i] - slack[0] {
             p.row_lower[i] = f64::NEG_INFINITY;
             changed = true;

@@ -8,7 +8,7 @@ use crate::model::instance::{Instance, Relation};
 pub(super) use crate::solve::certificate::nonlinear::{CONSIDERABLE, FAR};
 use crate::solve::certificate::nonlinear::{is_feasible_only_by_scaling, measure};
 use crate::solve::certificate::{Linearised, Residuals, TOLERANCE, row_violation};
-use crate::solve::noise::{LEVELS, snap};
+use crate::solve::noise::{LEVELS, rounding, snap};
 use crate::solve::vector::clip;
 
 /// A point that was judged.
@@ -219,7 +219,7 @@ pub(super) fn without_noise(
 ) -> Option<Trial> {
     let (lower, upper) = problem.bounds();
     let mut x = t.x.clone();
-    snap(&mut x, lower, upper);
+    snap(&mut x, lower, upper, &rounding(&t.x));
     for (v, (&l, &u)) in x.iter_mut().zip(lower.iter().zip(upper)) {
         if v.abs() <= LEVELS && l <= 0.0 && u >= 0.0 {
             *v = 0.0;

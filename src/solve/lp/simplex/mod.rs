@@ -572,7 +572,7 @@ impl Simplex {
     /// violation of δ at every bound does to the objective is δ times the sum of all multipliers,
     /// and on walls that sum is in the thousands. Where the numbers do not allow it, the first
     /// basis stays. Returns whether they did.
-    pub fn tighten(&mut self, stop: &mut dyn FnMut(u64) -> Option<Ended>) -> bool {
+    pub fn tighten(&mut self, stop: &mut dyn FnMut(u64) -> Option<Ended>) -> Ended {
         self.tighten_to(&[(1e-11, 1e-11), (1e-13, 1e-12)], stop)
     }
 
@@ -582,7 +582,7 @@ impl Simplex {
         &mut self,
         tolerances: &[(f64, f64)],
         stop: &mut dyn FnMut(u64) -> Option<Ended>,
-    ) -> bool {
+    ) -> Ended {
         let usual = (self.tolerance, self.dual_tolerance, self.limit);
         let most = usual.2.min(2 * self.iterations + self.m as u64);
         for &(primal, dual) in tolerances {
@@ -592,10 +592,10 @@ impl Simplex {
             (self.tolerance, self.dual_tolerance, self.limit) = usual;
             if ended != Ended::Solved {
                 self.set_basis(&basis);
-                return false;
+                return ended;
             }
         }
-        true
+        Ended::Solved
     }
 
     /// Alternates the methods; the first `perturbed` rounds with perturbations.
