@@ -10,6 +10,12 @@ pub struct Span {
 }
 
 impl Span {
+    /// No place in the text: what is meant stands elsewhere.
+    pub(crate) const NOWHERE: Self = Self {
+        lo: u32::MAX,
+        hi: u32::MAX,
+    };
+
     /// The range `lo..hi`.
     pub fn new(lo: u32, hi: u32) -> Self {
         Self { lo, hi }

@@ -220,6 +220,9 @@ impl SourceMap {
 
     /// Where a span of the expanded text stands in the original. None for an empty map.
     pub fn place(&self, span: Span) -> Option<Place> {
+        if span == Span::NOWHERE {
+            return None;
+        }
         let at = |pos: u32| {
             let i = self
                 .segments

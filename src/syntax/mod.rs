@@ -346,7 +346,7 @@ impl<'h> Parser<'h> {
     /// A warning of each of them.
     pub(crate) fn warnings_of_unused(&self) -> impl Iterator<Item = Diagnostic> {
         self.unused_defines().into_iter().map(|name| {
-            let d = Diagnostic::warning("E0117", Span::default()).says(format!(
+            let d = Diagnostic::warning("E0117", Span::NOWHERE).says(format!(
                 "`-D {name}` has no effect: nothing in the text reads `%{name}%`"
             ));
             let nearest = self.text.names.nearest(&name);
