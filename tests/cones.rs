@@ -16,7 +16,7 @@ const REFERENCE_GAP: f64 = 1e-7;
 const TOLERANCE: f64 = 1e-6;
 /// Rounds of tangents.
 const MAX_ROUNDS: usize = 400;
-/// Bound of the columns x, never active.
+/// Bound of the columns x in most families, never active.
 const BOX: f64 = 100.0;
 
 struct Random(u64);
@@ -104,12 +104,12 @@ fn dot(a: &[f64], x: &[f64]) -> f64 {
     a.iter().zip(x).map(|(a, x)| a * x).sum()
 }
 
-/// min Σ wₖ fₖ(x) + cᵀx, D x ≤ e, l ≤ x ≤ 100.
+/// min Σ wₖ fₖ(x) + cᵀx, D x ≤ e, l ≤ x ≤ u.
 struct Program {
     cost: Vec<f64>,
     functions: Vec<(f64, Convex)>,
     rows: Vec<(Vec<f64>, f64)>,
-    lower: f64,
+    bounds: [f64; 2],
 }
 
 impl Program {
@@ -146,7 +146,7 @@ impl Program {
             functions.push((weight, Convex::Norm(norm(random))));
         }
         for k in 0..2 + random.below(3) as usize {
-            let a = (0..n).map(|_| random.number(1.0)).collect();
+            let a = (0..n).map(|_| random.number(0.3)).collect();
             let (b, weight) = (random.number(2.0), weight(random));
             functions.push(match family {
                 Family::Places | Family::Residuals => break,
@@ -166,9 +166,10 @@ impl Program {
             cost: (0..n).map(|_| small(random)).collect(),
             functions,
             rows,
-            lower: match family {
-                Family::Entropy => 0.01,
-                _ => -BOX,
+            bounds: match family {
+                Family::Entropy => [0.01, BOX],
+                Family::Exponential | Family::Logistic => [-10.0, 10.0],
+                _ => [-BOX, BOX],
             },
         }
     }
@@ -186,7 +187,7 @@ impl Program {
     fn linear(&self) -> (Instance, usize) {
         let mut out = Instance::default();
         for _ in 0..self.n() {
-            out.add_column(self.lower, BOX, self.lower.max(0.0));
+            out.add_column(self.bounds[0], self.bounds[1], self.bounds[0].max(0.0));
         }
         let mut objective: Vec<(usize, f64)> = self.cost.iter().copied().enumerate().collect();
         for (w, f) in &self.functions {
@@ -212,9 +213,9 @@ impl Program {
     fn reference(&self) -> [f64; 2] {
         let (mut instance, z) = self.linear();
         let mut high = f64::INFINITY;
-        for _ in 0..MAX_ROUNDS {
+        for round in 0..MAX_ROUNDS {
             let found = solved(ProblemType::Lp, &instance);
-            assert_eq!(found.0, ModelStatus::Optimal);
+            assert_eq!(found.0, ModelStatus::Optimal, "round {round}");
             let (x, low) = (&found.1[..self.n()], found.1[z]);
             high = high.min(self.value(x));
             if high - low <= REFERENCE_GAP * high.abs().max(1.0) {

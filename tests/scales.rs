@@ -170,9 +170,9 @@ fn known(random: &mut Random) -> (Instance, f64) {
     for _ in 0..m {
         let r = random.unit(5);
         let mut row = Vec::new();
-        for j in 0..n {
+        for (j, unit) in unit.iter().enumerate() {
             if random.below(5) < 3 {
-                row.push((j, (random.number() - 5.0) * r * unit[j]));
+                row.push((j, (random.number() - 5.0) * r * unit));
             }
         }
         let at: f64 = row.iter().map(|&(j, a)| a * level[j]).sum();

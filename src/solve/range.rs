@@ -68,6 +68,8 @@ pub struct Ranges {
 
 /// How near to a bound is at it, relative to the two.
 const NEAR: f64 = 1e-10;
+/// The error of a row's level, relative to its largest term: that of columns that were solved for.
+const TERM_ROUNDING: f64 = 1e-13;
 /// A multiplier below this is 0, in the units of the scaled program.
 const NO_PRICE: f64 = 1e-9;
 /// An end nearer to 0 than this, relative to the number and the way from it, is 0.
@@ -112,8 +114,16 @@ pub fn ranges(
     out
 }
 
-fn near(a: f64, b: f64) -> bool {
-    b.is_finite() && (a - b).abs() <= NEAR * a.abs().max(b.abs()).max(1.0)
+/// `size`: the largest term of a sum a, whose rounding counts.
+fn near(a: f64, b: f64, size: f64) -> bool {
+    let error = (NEAR * a.abs().max(b.abs()).max(1.0)).max(TERM_ROUNDING * size);
+    b.is_finite() && (a - b).abs() <= error
+}
+
+/// The largest term of a row.
+fn largest_term(p: &Instance, x: &[f64], i: usize) -> f64 {
+    let terms = p.matrix.row(i).map(|(j, a)| (a * x[j]).abs());
+    terms.fold(0.0, f64::max)
 }
 
 /// A number without the rounding of a linear program: the nearest with eleven digits.
@@ -162,13 +172,14 @@ impl<'a> Cone<'a> {
         in_time: &'a dyn Fn() -> bool,
     ) -> Option<Self> {
         p.objective?;
-        let inside = |v: f64, l: f64, u: f64| match (near(v, l), near(v, u)) {
+        let inside = |v: f64, l: f64, u: f64| match (near(v, l, 0.0), near(v, u, 0.0)) {
             (false, false) => State::Basic,
             (true, _) => State::Lower,
             _ => State::Upper,
         };
         let columns = (0..x.len()).map(|j| inside(x[j], p.columns.lower[j], p.columns.upper[j]));
-        let rows = (0..p.row_count()).map(|i| match near(activity[i], p.rows.rhs[i]) {
+        let binds = |i: usize| near(activity[i], p.rows.rhs[i], largest_term(p, x, i));
+        let rows = (0..p.row_count()).map(|i| match binds(i) {
             false => State::Basic,
             true if p.rows.relation[i] == Relation::Less => State::Upper,
             true => State::Lower,
@@ -196,9 +207,9 @@ impl<'a> Cone<'a> {
     ) -> Option<Self> {
         let form = Form::new(p).ok()?;
         let scaling = Scaling::new(&form.problem);
-        let room = |v: f64, l: f64, u: f64, unit: f64| {
+        let room = |v: f64, size: f64, [l, u]: [f64; 2], unit: f64| {
             let by = |bound: f64| {
-                if near(v, bound) {
+                if near(v, bound, size) {
                     0.0
                 } else {
                     (bound - v) / unit
@@ -209,11 +220,12 @@ impl<'a> Cone<'a> {
         let q = &form.problem;
         let columns = form.columns.iter().enumerate().map(|(k, &j)| {
             let unit = scaling.column[k] * scaling.size;
-            room(x[j as usize], q.lower[k], q.upper[k], unit)
+            room(x[j as usize], 0.0, [q.lower[k], q.upper[k]], unit)
         });
         let rows = form.rows.iter().enumerate().map(|(k, &i)| {
             let unit = scaling.size / scaling.row[k];
-            room(activity[i as usize], q.row_lower[k], q.row_upper[k], unit)
+            let (i, sides) = (i as usize, [q.row_lower[k], q.row_upper[k]]);
+            room(activity[i], largest_term(p, x, i), sides, unit)
         });
         let room: Vec<[f64; 2]> = columns.chain(rows).collect();
         let scaled = scaling.apply(q);
@@ -335,7 +347,8 @@ impl<'a> Cone<'a> {
     fn row(&mut self, k: usize, i: usize) -> Option<RowRange> {
         let v = self.form.columns.len() + k;
         let (value, relation) = (self.p.rows.rhs[i], self.p.rows.relation[i]);
-        let tight = relation == Relation::Equal || near(self.activity[i], value);
+        let tight = relation == Relation::Equal
+            || near(self.activity[i], value, largest_term(self.p, &self.x, i));
         let unit = self.scaling.size / self.scaling.row[k];
         let worth = self.scaling.price * self.scaling.row[k];
         // The price and how far it holds when the right-hand side moves so.

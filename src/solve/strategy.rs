@@ -152,9 +152,9 @@ strategies! {
             "100 steps",
             "multistart";
         WidenedRows "widened_rows",
-            "rows without multipliers at the solution: curvature, by the multipliers of the same rows 1e-8 wider",
-            "100 steps, an eigenvalue problem",
-            "Fritz John points: Bonnans & Shapiro 2000, 3.2";
+            "rows without multipliers: curvature, by the multipliers of the same rows 1e-8 wider",
+            "100 steps",
+            "Bonnans & Shapiro 2000, 3.2";
         SaddleEscape "saddle_escape",
             "negative curvature on the tangent space of the active set: a step along it, and on from there",
             "three solves",
