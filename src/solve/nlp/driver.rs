@@ -91,8 +91,11 @@ pub fn solve(
         Convexity::Asked(engine) => Quadratic::new(&mut problem, engine, budget),
     };
     let quadratic = quadratic.filter(|_| settings.runs(Strategy::ConvexQuadratic));
-    if let (Convexity::Asked(engine), None) = (convexity, &quadratic) {
-        let name = engine.name;
+    let refused = match (convexity, &quadratic) {
+        (Convexity::Asked(engine), None) => Some(engine.name),
+        _ => None,
+    };
+    if let Some(name) = refused.filter(|n| *n == lp::QUADRATIC.name) {
         return Err(SolveError::new(format!(
             "`option {} = {name}`: {name} takes convex programs, and this one is not known to be convex; `default` leaves the \
              choice to the program",
@@ -100,6 +103,10 @@ pub fn solve(
         )));
     }
     let mut driver = Driver::new(instance, problem, interior_point, settings, budget);
+    driver.message = refused.map(|name| {
+        let own = interior_point.about().name;
+        format!("not a convex quadratic program with linear rows: solved by {own}, not by {name}")
+    });
     driver.was_moved = was_moved;
     driver.is_convex = quadratic.is_some();
     driver.named = matches!(convexity, Convexity::Ignored);

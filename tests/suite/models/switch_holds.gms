@@ -22,6 +22,8 @@ model m1 / o1, bigger, full, some /;
 model m2 / o2, big, full /;
 model m3 / o3, bigger, full /;
 option optcr = 0;
+* HiGHS calls 5 the optimum of the first
+option mip = bmip;
 solve m1 using mip maximizing z1;
 u.lo = 1;
 solve m2 using mip maximizing z2;
