@@ -4,6 +4,7 @@
 //! alike. With the coordinate planes added every cell is pointed: f'(x; ·) is nowhere negative if it is not on the edges of the
 //! cells, which are enumerated. Sampled directions are tried besides, and steps along all of them.
 
+use crate::common::Random;
 use bmod::model::outcome::ModelStatus;
 use bmod::model::problem_type::ProblemType;
 use bmod::solve::answer::answer;
@@ -16,21 +17,6 @@ const DESCENT: f64 = -1e-3;
 const NEAR: f64 = 3e-6;
 /// A step along a direction: what curves adds little to the slope.
 const STEP: f64 = 1e-4;
-
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, n: u64) -> u64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005);
-        self.0 = self.0.wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 33) % n
-    }
-
-    /// Whole numbers, so that pieces meet often.
-    fn whole(&mut self, most: i64) -> f64 {
-        (self.below(2 * most as u64 + 1) as i64 - most) as f64
-    }
-}
 
 /// c + g·x + Σ q_j x_j².
 struct Piece {

@@ -6,7 +6,7 @@ use bmod::solver::{
     Answer, Budget, Instance, ProblemType, Quiet, Relation, Sense, Settings, answer,
 };
 
-use crate::common::{self, Memory};
+use crate::common::{self, Memory, Random};
 
 /// Covering programs; their numbers have two decimals.
 const COVERING: u64 = 25;
@@ -15,24 +15,14 @@ const KNOWN: u64 = 300;
 /// What sums may be off by, relative to their largest term.
 const TOLERANCE: f64 = 1e-9;
 
-struct Random(u64);
+/// A number from 0.5 to 10, with two decimals.
+fn number(random: &mut Random) -> f64 {
+    (50 + random.below(951)) as f64 / 100.0
+}
 
-impl Random {
-    fn below(&mut self, n: u64) -> u64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005);
-        self.0 = self.0.wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 33) % n
-    }
-
-    /// A number from 0.5 to 10, with two decimals.
-    fn number(&mut self) -> f64 {
-        (50 + self.below(951)) as f64 / 100.0
-    }
-
-    /// A power of ten.
-    fn unit(&mut self, most: i32) -> f64 {
-        10f64.powi(self.below(2 * most as u64 + 1) as i32 - most)
-    }
+/// A power of ten.
+fn power_of_ten(random: &mut Random, most: i64) -> f64 {
+    10f64.powi(random.whole(most) as i32)
 }
 
 /// Costs and rows of `min c x, A x ≥ b, 0 ≤ x ≤ far`; every column is in a row.
@@ -51,20 +41,20 @@ fn sum(factors: &[f64]) -> String {
 impl Covering {
     fn random(random: &mut Random) -> Self {
         let (n, m) = (1 + random.below(10) as usize, 1 + random.below(4) as usize);
-        let size = random.unit(3);
+        let size = power_of_ten(random, 3);
         let rows = (0..m).map(|i| {
             let entry = |j: usize, r: &mut Random| match j % m == i || r.below(3) > 0 {
-                true => r.number(),
+                true => number(r),
                 false => 0.0,
             };
             let mut row: Vec<f64> = (0..n).map(|j| entry(j, random)).collect();
             row[0] += 1.0;
-            (row, random.number() * size)
+            (row, number(random) * size)
         });
         let rows = rows.collect();
         Self {
             rows,
-            cost: (0..n).map(|_| random.number()).collect(),
+            cost: (0..n).map(|_| number(random)).collect(),
             far: 10f64.powi(10 + random.below(6) as i32),
         }
     }
@@ -150,12 +140,12 @@ fn known(random: &mut Random) -> (Instance, f64) {
     let sense = [Sense::Minimize, Sense::Maximize][random.below(2) as usize];
     let sigma = sense.sign();
     let mut out = Instance::default();
-    let unit: Vec<f64> = (0..n).map(|_| random.unit(5)).collect();
+    let units: Vec<f64> = (0..n).map(|_| power_of_ten(random, 5)).collect();
     let (mut level, mut cost) = (Vec::new(), Vec::new());
-    for unit in &unit {
-        let x = [0.0, random.number(), -random.number()][random.below(3) as usize] / unit;
-        let d = random.number() * random.unit(2) * unit;
-        let side = |r: &mut Random| [f64::INFINITY, r.number() / unit][r.below(2) as usize];
+    for unit in &units {
+        let x = [0.0, number(random), -number(random)][random.below(3) as usize] / unit;
+        let d = number(random) * power_of_ten(random, 2) * unit;
+        let side = |r: &mut Random| [f64::INFINITY, number(r) / unit][r.below(2) as usize];
         let (below, above) = (side(random), side(random));
         // inside, at the lower bound, at the upper bound
         let (l, u, d) = match random.below(3) {
@@ -168,16 +158,16 @@ fn known(random: &mut Random) -> (Instance, f64) {
         cost.push(d);
     }
     for _ in 0..m {
-        let r = random.unit(5);
+        let r = power_of_ten(random, 5);
         let mut row = Vec::new();
-        for (j, unit) in unit.iter().enumerate() {
+        for (j, unit) in units.iter().enumerate() {
             if random.below(5) < 3 {
-                row.push((j, (random.number() - 5.0) * r * unit));
+                row.push((j, (number(random) - 5.0) * r * unit));
             }
         }
         let at: f64 = row.iter().map(|&(j, a)| a * level[j]).sum();
-        let y = random.number() * random.unit(2) / r;
-        let room = random.number() * r;
+        let y = number(random) * power_of_ten(random, 2) / r;
+        let room = number(random) * r;
         // tight or slack
         let (relation, rhs, y) = match random.below(5) {
             0 => (Relation::Equal, at, y),

@@ -36,7 +36,7 @@ fn skips(a: &Assignment, value: f64) -> bool {
 }
 
 /// What `execError` and `maxExecError` count to.
-const MOST_ERRORS: usize = 1_000_000_000;
+const MAX_STATEMENT_ERRORS: usize = 1_000_000_000;
 
 impl Machine<'_> {
     pub(super) fn block(&mut self, code: &[Code], frame: &mut Frame) -> Flow {
@@ -288,7 +288,7 @@ impl Machine<'_> {
             if skips(a, v) {
                 return;
             }
-            let count = |what| self.whole(v, what, [0, MOST_ERRORS], value.span);
+            let count = |what| self.whole(v, what, [0, MAX_STATEMENT_ERRORS], value.span);
             match target {
                 Target::Errors => {
                     if let Some(n) = count("`execError`") {

@@ -19,7 +19,7 @@ const MONTHS: [&str; 12] = [
 ];
 
 /// Rows that are told from one another: all lie below a page.
-const MOST_ROWS: usize = 1_000_000;
+const MAX_ROWS: usize = 1_000_000;
 
 impl Machine<'_> {
     /// A statement.
@@ -79,7 +79,7 @@ impl Machine<'_> {
                 }
                 PutCode::Row(n) => {
                     let row = self.eval(n, frame);
-                    let row = self.whole(row, "the row behind `#`", [1, MOST_ROWS], n.span);
+                    let row = self.whole(row, "the row behind `#`", [1, MAX_ROWS], n.span);
                     let Some(f) = self.put_file(span) else { return };
                     if let Some(row) = row {
                         let r = f.text.row(part, row);

@@ -117,13 +117,9 @@ fn without_noise(task: &Task, outcome: &mut Outcome) {
         let least = costs.filter(|c| *c > 0.0).reduce(f64::min).unwrap_or(0.0);
         return noise::clear(|i| instance.matrix.row(i), least, y, d);
     }
-    let mut evaluator = Evaluator::first_order(instance);
-    let mut value = vec![0.0; evaluator.jacobian_pattern().1.len()];
-    if evaluator.jacobian(&outcome.level, &mut value).is_ok() {
-        let (start, column) = evaluator.jacobian_pattern();
-        let entry = |k: usize| (column[k] as usize, value[k]);
+    if let Ok(lines) = Evaluator::first_order(instance).jacobian_rows(&outcome.level) {
         // iterations leave errors of this unit, whatever the slopes
-        noise::clear(|i| (start[i]..start[i + 1]).map(entry), 1.0, y, d);
+        noise::clear(|i| lines[i].iter().copied(), 1.0, y, d);
     }
 }
 
@@ -235,38 +231,81 @@ fn by_cones(
         settings.options.push(("without".into(), without));
         solve(backends, task, &settings, budget).ok()
     };
+    let mut first = None;
     if !conic.has_apex && !asked {
-        let mut found = smooth()?;
-        let proved = found.residuals.is_feasible(TOLERANCE)
-            && found.residuals.dual_relative <= TOLERANCE
-            && found.outcome.claim == Claim::LocallySolved;
+        let found = convex(smooth()?, &conic);
         let limited = !matches!(
             found.outcome.status,
             SolverStatus::NormalCompletion | SolverStatus::TerminatedBySolver
         );
-        match found.status {
-            ModelStatus::LocallyOptimal if proved => {
-                found.status = ModelStatus::Optimal;
-                found.outcome.claim = Claim::Solved;
-                if found.residuals.primal_relative <= ROUNDED {
-                    let said = || format!("convex: {}", conic.kinds());
-                    found.outcome.message.get_or_insert_with(said);
-                }
-                return Some(found);
-            }
-            ModelStatus::Optimal | ModelStatus::Unbounded | ModelStatus::Infeasible => {
-                return Some(found);
-            }
-            _ if limited => return Some(found),
-            _ => {}
+        use ModelStatus::{Infeasible, Optimal, Unbounded};
+        if limited || matches!(found.status, Optimal | Unbounded | Infeasible) {
+            return Some(found);
+        }
+        first = Some(found);
+    }
+    if let Some(found) = by_clarabel(backends, task, &conic, settings, budget) {
+        return Some(found);
+    }
+    if asked {
+        return None;
+    }
+    first.or_else(|| Some(convex(smooth()?, &conic)))
+}
+
+/// A point of a convex program that a method for smooth ones found: with multipliers it is optimal, but at the apex of a
+/// squared row, where multipliers as large as they like make any point stationary.
+fn convex(mut found: Answer, conic: &Conic) -> Answer {
+    let proved = found.residuals.is_feasible(TOLERANCE)
+        && found.residuals.dual_relative <= TOLERANCE
+        && found.outcome.claim == Claim::LocallySolved;
+    if found.status != ModelStatus::LocallyOptimal {
+        return found;
+    }
+    if conic.squares_at_apex(&found.outcome.level).any(|at| at) {
+        found.status = ModelStatus::Feasible;
+        found.outcome.claim = Claim::Unfinished;
+        found.outcome.message = Some(format!(
+            "{}, which were not solved; a squared row has no multipliers at its apex, where this point is",
+            conic.kinds()
+        ));
+    } else if proved {
+        found.status = ModelStatus::Optimal;
+        found.outcome.claim = Claim::Solved;
+        if found.residuals.primal_relative <= ROUNDED {
+            let said = || format!("convex: {}", conic.kinds());
+            found.outcome.message.get_or_insert_with(said);
         }
     }
+    found
+}
+
+/// The solution of the conic program.
+fn by_clarabel(
+    backends: &[&dyn Backend],
+    task: &Task,
+    conic: &Conic,
+    settings: &Settings,
+    budget: &Budget,
+) -> Option<Answer> {
+    let instance = task.instance;
     let solution = conic.solve(instance, budget)?;
-    let reply = Reply::from(solution.outcome);
-    let found = certified(task, reply.clone(), None);
+    let mut reply = Reply::from(solution.outcome);
+    let mut found = certified(task, reply.clone(), None);
+    if reply.outcome.claim == Claim::Solved && !found.residuals.is_feasible(TOLERANCE) {
+        // an error of a cone's coordinates is larger in their squares
+        let value = |level: &[f64]| instance.objective.map_or(0.0, |o| level[o.column as usize]);
+        let before = value(&reply.outcome.level);
+        reply.outcome.level = nlp::onto_rows(instance, &reply.outcome.level, budget)?;
+        let moved = (value(&reply.outcome.level) - before).abs();
+        if moved > TOLERANCE * before.abs().max(1.0) {
+            return None;
+        }
+        found = certified(task, reply.clone(), None);
+    }
     if found.outcome.claim == Claim::Solved
         && solution.at_apex == 0
-        && found.residuals.dual_relative > POLISHED
+        && found.residuals.dual_relative > UNPOLISHED_RESIDUAL
         && let Some(polished) = polished(backends, task, &found, settings, budget)
     {
         return Some(polished);
@@ -300,7 +339,7 @@ pub(crate) fn cones_of(using: ProblemType, instance: &Instance) -> Option<String
 
 /// Cones leave about half of the digits of their gap in the multipliers of rows as they are written: with more residual than
 /// this a method that has derivatives goes on from there.
-const POLISHED: f64 = 1e-9;
+const UNPOLISHED_RESIDUAL: f64 = 1e-9;
 
 /// Iterations of that method.
 const POLISH_ITERATIONS: u64 = 30;
@@ -616,7 +655,7 @@ const ROUNDED: f64 = 1e-8;
 
 /// What a program that is proved to have no point may miss, as after data that were rounded to seven digits: it is solved all
 /// the same.
-const PROVED: f64 = 1e-7;
+const ROUNDED_DATA_TOLERANCE: f64 = 1e-7;
 
 /// What rows miss by the arithmetic alone.
 const ARITHMETIC: f64 = 1e-12;
@@ -643,7 +682,11 @@ fn least_violation(
         found.status,
         ModelStatus::Infeasible | ModelStatus::IntegerInfeasible
     );
-    let tolerance = if proved { PROVED } else { TOLERANCE };
+    let tolerance = if proved {
+        ROUNDED_DATA_TOLERANCE
+    } else {
+        TOLERANCE
+    };
     if moves && near.residuals.is_feasible(tolerance) {
         let moved = moved(instance, &near.activity);
         let inner = Task {

@@ -265,12 +265,8 @@ fn solve(
     };
     let (mut out, status) = run(&mut problem, &names, settings, budget)?;
     let (lower, upper) = (&instance.columns.lower, &instance.columns.upper);
-    let mut evaluator = Evaluator::first_order(instance);
-    let mut value = vec![0.0; evaluator.jacobian_pattern().1.len()];
-    if evaluator.jacobian(&out.x, &mut value).is_ok() {
-        let (start, column) = evaluator.jacobian_pattern();
-        let entry = |k: usize| (column[k] as usize, value[k]);
-        let row = |i: usize| (start[i]..start[i + 1]).map(entry);
+    if let Ok(lines) = Evaluator::first_order(instance).jacobian_rows(&out.x) {
+        let row = |i: usize| lines[i].iter().copied();
         let errors = noise::rounding_in_rows(&out.x, instance.row_count(), row);
         noise::snap(&mut out.x, lower, upper, &errors);
     }

@@ -193,3 +193,20 @@ pub fn instances(text: &str) -> Vec<(ProblemType, Instance)> {
     assert!(!out.is_empty(), "{said:?}\n{text}");
     out
 }
+
+/// Numbers that look random and are the same in every run: D. E. Knuth's linear congruential generator (MMIX).
+pub struct Random(pub u64);
+
+impl Random {
+    /// A whole number from 0 below n.
+    pub fn below(&mut self, n: u64) -> u64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005);
+        self.0 = self.0.wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 33) % n
+    }
+
+    /// A whole number from −most to most.
+    pub fn whole(&mut self, most: i64) -> f64 {
+        (self.below(2 * most as u64 + 1) as i64 - most) as f64
+    }
+}

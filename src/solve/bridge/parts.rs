@@ -147,6 +147,14 @@ impl<'e> Tree<'e> {
         }
     }
 
+    /// The product of the factors that are numbers, and the ends of the others.
+    pub(in crate::solve) fn factors(&self, all: &[usize]) -> (f64, Vec<usize>) {
+        let numbers = all.iter().filter_map(|&a| self.number(a));
+        let others = all.iter().copied();
+        let others = others.filter(|&a| self.number(a).is_none());
+        (numbers.product(), others.collect())
+    }
+
     pub(in crate::solve) fn split(&self, p: usize, weight: f64, out: &mut Parts) {
         let (columns, constants) = (&self.whole.columns, &self.whole.constants);
         let arguments = self.arguments(p);
@@ -165,14 +173,9 @@ impl<'e> Tree<'e> {
                 self.split(a, weight / self.number(b).unwrap_or(1.0), out);
             }
             (Op::Multiply(_), all) => {
-                let numbers = all.iter().filter_map(|&a| self.number(a));
-                let rest: Vec<usize> = all
-                    .iter()
-                    .copied()
-                    .filter(|&a| self.number(a).is_none())
-                    .collect();
+                let (number, rest) = self.factors(all);
                 match rest[..] {
-                    [a] => self.split(a, weight * numbers.product::<f64>(), out),
+                    [a] => self.split(a, weight * number, out),
                     _ => out.nonlinear.push((weight, self.cut(p))),
                 }
             }

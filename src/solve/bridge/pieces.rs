@@ -15,6 +15,7 @@ use crate::model::instance::{Function, Instance, Relation};
 use crate::model::problem_type::ProblemType;
 use crate::solve::answer::{Answer, subproblem};
 use crate::solve::backend::{Reply, Task};
+use crate::solve::certificate::nonlinear::{binding_rows, steps_within_bounds};
 use crate::solve::certificate::{Residuals, TOLERANCE};
 use crate::solve::{Budget, Claim, ModelStatus, Settings};
 use std::ops::Range;
@@ -153,21 +154,7 @@ impl Pieces {
         let instance = builder.finish(instance);
         let x = &instance.columns.level;
         let (activity, lines) = Evaluator::first_order(&instance).linearised(x).ok()?;
-        let reach = |&(j, a): &(usize, f64)| (a * x[j].abs().max(1.0)).abs();
-        let binding: Vec<bool> = (0..lines.len())
-            .map(|i| {
-                let rhs = instance.rows.rhs[i];
-                let size = lines[i]
-                    .iter()
-                    .map(reach)
-                    .fold(rhs.abs().max(1.0), f64::max);
-                match instance.rows.relation[i] {
-                    Relation::Equal => true,
-                    Relation::Free => false,
-                    _ => (activity[i] - rhs).abs() <= TOLERANCE * size,
-                }
-            })
-            .collect();
+        let binding = binding_rows(&instance, x, &activity, &lines);
         let kink = |(column, rows, is_max): (usize, Range<usize>, bool)| Kink {
             column,
             is_max,
@@ -255,11 +242,8 @@ impl Pieces {
         }
         reach[z] = f64::INFINITY;
         let mut program = Instance::default();
-        for (j, &x) in x.iter().enumerate() {
-            let (l, u) = (instance.columns.lower[j], instance.columns.upper[j]);
-            let near = TOLERANCE * x.abs().max(1.0);
-            let down = if x - l <= near { 0.0 } else { -reach[j] };
-            let up = if u - x <= near { 0.0 } else { reach[j] };
+        for (j, &reach) in reach.iter().enumerate() {
+            let [down, up] = steps_within_bounds(instance, x, j, reach);
             program.add_column(down, up, 0.0);
         }
         let mut scale = 1.0_f64;

@@ -37,11 +37,11 @@ pub const TOLERANCE: f64 = 1e-6;
 
 /// What of a size above 1 counts: rows and bounds are judged by [`TOLERANCE`], or by this times it relative to terms of a
 /// thousand and more.
-const OF_LARGE: f64 = 1e-3;
+const LARGE_TERM_FACTOR: f64 = 1e-3;
 
 /// What a violation is relative to in a row whose largest term, or at a bound whose size, is this.
 pub fn unit_of(size: f64) -> f64 {
-    size.min(1.0).max(OF_LARGE * size)
+    size.min(1.0).max(LARGE_TERM_FACTOR * size)
 }
 
 /// Largest violations, in the model's units; None where one does not apply.

@@ -85,6 +85,39 @@ pub fn linearise(
     })
 }
 
+/// Whether each row holds as an equation at a point, by its level and derivatives.
+pub fn binding_rows(
+    instance: &Instance,
+    x: &[f64],
+    activity: &[f64],
+    lines: &[Vec<(usize, f64)>],
+) -> Vec<bool> {
+    let binds = |i: usize| {
+        let rhs = instance.rows.rhs[i];
+        let terms = lines[i]
+            .iter()
+            .map(|&(j, a)| (a * x[j].abs().max(1.0)).abs());
+        let size = terms.fold(rhs.abs().max(1.0), f64::max);
+        match instance.rows.relation[i] {
+            Relation::Equal => true,
+            Relation::Free => false,
+            _ => (activity[i] - rhs).abs() <= TOLERANCE * size,
+        }
+    };
+    (0..lines.len()).map(binds).collect()
+}
+
+/// How far a column may move down and up, at most `reach` each way: not beyond a bound that it is at.
+pub fn steps_within_bounds(instance: &Instance, x: &[f64], j: usize, reach: f64) -> [f64; 2] {
+    let near = TOLERANCE * x[j].abs().max(1.0);
+    let down = x[j] - instance.columns.lower[j] > near;
+    let up = instance.columns.upper[j] - x[j] > near;
+    [
+        if down { -reach } else { 0.0 },
+        if up { reach } else { 0.0 },
+    ]
+}
+
 /// Where a derivative does not exist, as that of √x at 0: the point with what is at a bound moved inside by next to nothing.
 /// There the slope is steep, as the limit is. Where something is beyond a bound, which an interior point relaxes a little, the
 /// same for any failure. None where the failure is another.

@@ -161,6 +161,14 @@ impl Problem {
         self.rows.line(i).map(|(j, a)| a * x[j]).sum()
     }
 
+    /// The side of a row that a multiplier prices: the lower one if it is positive.
+    pub fn priced_side(&self, i: usize, multiplier: f64) -> f64 {
+        match multiplier > 0.0 {
+            true => self.row_lower[i],
+            false => self.row_upper[i],
+        }
+    }
+
     /// A value between the bounds of a column: one of them if there is one.
     pub fn at_bound(&self, j: usize) -> f64 {
         let bounds = [self.lower[j], self.upper[j]];

@@ -46,7 +46,7 @@ fn mean(values: impl Iterator<Item = f64>) -> f64 {
 }
 
 /// Bounds so many times beyond what the rows ask for are as good as none: no point is near them.
-const FAR: f64 = 1e6;
+const MAX_BOUND_RATIO: f64 = 1e6;
 
 /// The size of right-hand sides and of the bounds that are not far beyond them.
 fn size_of(p: &Problem, row: &[f64], column: &[f64]) -> f64 {
@@ -59,7 +59,7 @@ fn size_of(p: &Problem, row: &[f64], column: &[f64]) -> f64 {
         true => mean(sides.clone()),
         false => bounds.clone().filter(counts).fold(f64::INFINITY, f64::min),
     };
-    mean(sides.chain(bounds.filter(|b| *b <= FAR * unit)))
+    mean(sides.chain(bounds.filter(|b| *b <= MAX_BOUND_RATIO * unit)))
 }
 
 impl Scaling {

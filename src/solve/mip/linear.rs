@@ -159,11 +159,7 @@ impl Relaxation for Linear {
         let mut largest: Vec<f64> = terms.iter().map(|t| t.abs()).collect();
         let top = y.iter().fold(0.0f64, |m, y| m.max(y.abs()));
         for (i, &y) in y.iter().enumerate().filter(|y| *y.1 != 0.0) {
-            let bound = if y > 0.0 {
-                p.row_lower[i]
-            } else {
-                p.row_upper[i]
-            };
+            let bound = p.priced_side(i, y);
             if bound.is_finite() {
                 side -= y * bound;
                 for (j, a) in p.rows.line(i) {

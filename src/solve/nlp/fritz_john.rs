@@ -12,6 +12,7 @@ use crate::model::problem_type::ProblemType;
 use crate::solve::answer::subproblem;
 use crate::solve::backend::Task;
 use crate::solve::certificate::TOLERANCE;
+use crate::solve::certificate::nonlinear::{binding_rows, steps_within_bounds};
 use crate::solve::{Budget, ModelStatus, Settings};
 
 /// Multipliers below this, relative to the largest, are those of rows that have some beside the objective.
@@ -56,18 +57,7 @@ fn linearised_program(
     let (activity, mut lines) = evaluator.linearised(level).ok()?;
     let (m, n) = (instance.row_count(), instance.column_count());
     let size = |j: usize| level[j].abs().max(1.0);
-    let binding: Vec<bool> = (0..m)
-        .map(|i| {
-            let rhs = instance.rows.rhs[i];
-            let largest = lines[i].iter().map(|&(j, a)| (a * size(j)).abs());
-            let largest = largest.fold(rhs.abs().max(1.0), f64::max);
-            match instance.rows.relation[i] {
-                Relation::Equal => true,
-                Relation::Free => false,
-                _ => (activity[i] - rhs).abs() <= TOLERANCE * largest,
-            }
-        })
-        .collect();
+    let binding = binding_rows(instance, level, &activity, &lines);
     // rows g ≤ 0 have multipliers λ ≥ 0, which are marginals of the other sign
     let sign = instance.sign();
     let of_objective = |i: usize| lines[i].iter().any(|e| e.0 == z);
@@ -131,16 +121,12 @@ fn linearised_program(
     }
     let mut program = Instance::default();
     for (j, &sum) in cancelled.iter().enumerate() {
-        let near = TOLERANCE * size(j);
-        let below = level[j] - instance.columns.lower[j] <= near;
-        let above = instance.columns.upper[j] - level[j] <= near;
+        let reach = if j == z { f64::INFINITY } else { size(j) };
+        let [down, up] = steps_within_bounds(instance, level, j, reach);
         let sum = sum * size(j);
-        if sum > small && !below || sum < -small && !above {
+        if sum > small && down < 0.0 || sum < -small && up > 0.0 {
             return None;
         }
-        let reach = if j == z { f64::INFINITY } else { size(j) };
-        let down = if below { 0.0 } else { -reach };
-        let up = if above { 0.0 } else { reach };
         program.add_column(down, up, 0.0);
     }
     let mut scale = 1.0f64;

@@ -38,6 +38,7 @@ mod verdict;
 use super::backend::{About, Backend, QuadraticEngine, Replied, Supports, Task, Terms, is_called};
 use super::registry::BACKENDS;
 use super::{Budget, Settings, lp};
+use crate::model::instance::Instance;
 use interior_point::InteriorPoint;
 #[cfg(feature = "ipopt")]
 pub use options::IPOPT_OPTIONS;
@@ -49,6 +50,15 @@ pub(super) use driver::solve_by_products;
 
 /// Name of the threads on which interior-point solvers run that may panic.
 pub const THREAD: &str = "nonlinear solver";
+
+/// Levels nearby at which the rows hold, from a point at which they all but do. None where nothing can be evaluated.
+pub(super) fn onto_rows(instance: &Instance, level: &[f64], budget: &Budget) -> Option<Vec<f64>> {
+    let mut instance = instance.clone();
+    instance.columns.level.copy_from_slice(level);
+    let mut problem = problem::Problem::new(&instance);
+    let run = newton::solve(&mut problem, &mut |_| budget.is_over())?;
+    Some(problem.levels(&run.x))
+}
 
 /// The solvers that are in this build, the default first.
 pub fn interior_point_solvers() -> &'static [&'static dyn InteriorPoint] {

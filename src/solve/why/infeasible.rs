@@ -134,11 +134,7 @@ fn support(p: &Problem, y: &[f64]) -> (Vec<(Member, f64)>, f64) {
     for (i, &v) in y.iter().enumerate() {
         if v.abs() > 1e-9 * top {
             members.push((Member::Row(i), v));
-            excess += v * if v > 0.0 {
-                p.row_lower[i]
-            } else {
-                p.row_upper[i]
-            };
+            excess += v * p.priced_side(i, v);
         }
     }
     for j in 0..p.n() {

@@ -23,11 +23,7 @@ pub(crate) fn bound(p: &Problem, cost: &[f64], y: &[f64]) -> f64 {
     let mut sum = WideSum::default();
     let mut used = y.to_vec();
     for (i, y) in used.iter_mut().enumerate() {
-        let side = if *y > 0.0 {
-            p.row_lower[i]
-        } else {
-            p.row_upper[i]
-        };
+        let side = p.priced_side(i, *y);
         // A multiplier without a side to price is left out.
         if side.is_finite() {
             sum.add_product(*y, side);
