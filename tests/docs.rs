@@ -90,6 +90,30 @@ fn run(page: &str, folder: &Path) -> String {
     out
 }
 
+/// README shows the file of its first command, comments aside, and how its output begins.
+#[test]
+fn readme_shows_the_wall() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let page = std::fs::read_to_string(root.join("README.md")).expect("README");
+    let text = std::fs::read_to_string(root.join("models/wall.blk")).expect("the wall");
+    let says = |l: &&str| !l.is_empty() && !l.starts_with('*') && !l.starts_with("$title");
+    let words = |text: &str| -> String {
+        let lines: Vec<&str> = text.lines().filter(says).collect();
+        let words: Vec<&str> = lines.iter().flat_map(|l| l.split_whitespace()).collect();
+        words.join(" ")
+    };
+    let blocks: Vec<&str> = page.split("```\n").skip(1).step_by(2).collect();
+    let [output, file, ..] = blocks[..] else {
+        panic!("README has no two blocks");
+    };
+    assert_eq!(words(file), words(&text));
+    let folder = tempfile::tempdir().expect("a folder");
+    let command = format!("bmod run {}", root.join("models/wall.blk").display());
+    let now = output_of(&command, folder.path());
+    let first: Vec<&str> = now.lines().take(output.lines().count()).collect();
+    assert_eq!(lasting(output.trim_end()), lasting(&first.join("\n")));
+}
+
 /// The pictures that the commands of a page have drawn.
 fn pictures_of(folder: &Path) -> Vec<String> {
     let entries = std::fs::read_dir(folder).expect("a folder");
